@@ -1,7 +1,11 @@
 //! Progressive radiosity of polygonal diffuse scenes.
 #![deny(missing_docs)]
 
+pub mod form_factor;
+pub mod geometry;
+pub mod mesh;
 pub mod radiometry;
 pub mod scene;
 pub mod solution;
+pub mod solver;
 pub mod visibility;

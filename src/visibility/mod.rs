@@ -72,6 +72,12 @@ impl Fans {
         self.x.len()
     }
 
+    /// Origin and targets of fan `i`.
+    pub fn fan(&self, i: usize) -> (Vec3, impl ExactSizeIterator<Item = Vec3> + '_) {
+        let targets = self.range(i).map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
+        (self.origins[i], targets)
+    }
+
     /// The range of fan `i` in the target arrays.
     pub(crate) fn range(&self, i: usize) -> std::ops::Range<usize> {
         let end = self.starts.get(i + 1).map_or(self.x.len(), |&s| s as usize);
