@@ -46,12 +46,15 @@ pub struct Sampler<'a> {
     pub thresholds: SourceThresholds,
 }
 
+const GATE: f64 = 0.05;
 /// A cell that is not split for one point.
 #[derive(Debug, Clone, Copy)]
 struct Leaf {
     cell: CellIndex,
     /// Irradiance from the cell if it is seen.
     contribution: Spectrum,
+    /// The same with the radiosity where the ray is aimed instead of the cell's mean.
+    aimed: Spectrum,
     /// What is compared with the thresholds.
     measure: f32,
     /// Area above the horizon.
@@ -145,8 +148,9 @@ impl Sampler<'_> {
                         pending.extend(parts.rev());
                         continue;
                     }
-                    // The finer estimate is at hand: keep it.
-                    leaf.contribution = refined;
+                    // The finer estimate is at hand, and what is left of its second-order error is a third of the difference.
+                    leaf.contribution = (refined + (refined - leaf.contribution) / 3.0).max(Spectrum::ZERO);
+                    leaf.aimed = leaf.contribution;
                 }
             }
             leaves.push(leaf);
@@ -158,14 +162,14 @@ impl Sampler<'_> {
         let contribution = of.radiosity * sight.form_factor as f32;
         let measure = if self.thresholds.raw { sight.form_factor as f32 } else { contribution.max_element() };
         let area = sight.cut.as_ref().map_or(of.area, |cut| crate::geometry::polygon::vector_area(cut.corners()).length());
-        Leaf { cell, contribution, measure, area: area as f32, seen: false }
+        Leaf { cell, contribution, aimed: contribution, measure, area: area as f32, seen: false }
     }
 
     /// Whether a bound on the difference between a cell and its sub-cells leaves the paper's first test open.
     fn may_differ(&self, source: &Source, leaf: &Leaf, sight: &Sight) -> bool {
         let of = source.cell(leaf.cell);
         let variation = if self.thresholds.raw { 0.0 } else { f64::from(of.variation) * sight.form_factor };
-        f64::from(leaf.measure) * sight.uncertainty + variation > self.thresholds.difference
+        f64::from(leaf.measure) * sight.uncertainty + variation > self.thresholds.difference * GATE
     }
 
     /// Step 2: a ray to each fresh leaf of each point.
@@ -175,7 +179,7 @@ impl Sampler<'_> {
         owners.clear();
         for (i, (receiver, key)) in receivers.iter().enumerate() {
             let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
-            for (n, leaf) in leaves[i][fresh[i]..].iter().enumerate() {
+            for (n, leaf) in leaves[i][fresh[i]..].iter_mut().enumerate() {
                 if n % MAX_FAN == 0 {
                     fans.begin(origin);
                     owners.push((i as u32, (fresh[i] + n) as u32));
@@ -192,12 +196,17 @@ impl Sampler<'_> {
         fans.segments() as u64
     }
 
-    fn target(&self, source: &Source, receiver: Receiver, key: u32, leaf: &Leaf) -> glam::Vec3 {
+    /// Aims the ray of a leaf.
+    fn target(&self, source: &Source, receiver: Receiver, key: u32, leaf: &mut Leaf) -> glam::Vec3 {
         let [s, t] = jitter(key, leaf.cell).map(|j| 0.05 + 0.9 * j);
         let cell = source.cell(leaf.cell);
         // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
         let whole = leaf.area >= cell.area as f32;
         let cut = (!whole).then(|| self.formula.sight(receiver, cell, source.normal()).cut).flatten();
+        if whole && cell.variation > 0.0 {
+            let mean = cell.radiosity.max(Spectrum::splat(f32::MIN_POSITIVE));
+            leaf.aimed = leaf.contribution * (source.radiosity_at(leaf.cell, s, t) / mean);
+        }
         let point = cut.map_or_else(|| cell.at(s, t), |cut| receiver.point + point_in_cut(&cut, s, t));
         lift(point, source.normal(), self.extent).as_vec3()
     }
@@ -272,14 +281,19 @@ fn disagrees(cell: CellIndex, own: State, state: &[State]) -> bool {
     }
 }
 
+/// Adds up the leaves of a point.
+///
+/// Where all rays arrive, the cells' means are exact. Where some do not, what is hidden from the point tends to be what is hidden
+/// from the light, so the mean of a cell times its visibility would lose light; the radiosity where the ray was aimed does not.
 fn sum(leaves: &[Leaf]) -> Gather {
+    let all = leaves.iter().all(|leaf| leaf.seen);
     let mut gather = Gather::default();
     let (mut seen, mut area) = (0.0, 0.0);
     for leaf in leaves {
         gather.unoccluded += leaf.contribution;
         area += leaf.area;
         if leaf.seen {
-            gather.irradiance += leaf.contribution;
+            gather.irradiance += if all { leaf.contribution } else { leaf.aimed };
             seen += leaf.area;
         }
     }

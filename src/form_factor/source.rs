@@ -178,6 +178,28 @@ impl Source {
         &self.cells[index as usize]
     }
 
+    /// Radiosity at the point (s, t) of a cell, to the resolution of the deepest level.
+    pub(super) fn radiosity_at(&self, mut index: CellIndex, s: f64, t: f64) -> Spectrum {
+        let (mut s, mut t) = match self.shape {
+            SourceShape::Triangle if s + t > 1.0 => (1.0 - s, 1.0 - t),
+            _ => (s, t),
+        };
+        while self.has_children(index) && self.cell(index).variation > 0.0 {
+            let (child, s2, t2) = match self.shape {
+                SourceShape::Quad => {
+                    let child = [[0, 3], [1, 2]][usize::from(s >= 0.5)][usize::from(t >= 0.5)];
+                    (child, (2.0 * s).fract(), (2.0 * t).fract())
+                }
+                SourceShape::Triangle if s > 0.5 => (1, 2.0 * s - 1.0, 2.0 * t),
+                SourceShape::Triangle if t > 0.5 => (2, 2.0 * s, 2.0 * t - 1.0),
+                SourceShape::Triangle if s + t < 0.5 => (0, 2.0 * s, 2.0 * t),
+                SourceShape::Triangle => (3, 1.0 - 2.0 * s, 1.0 - 2.0 * t),
+            };
+            (index, s, t) = (4 * index + 1 + child, s2, t2);
+        }
+        self.cell(index).radiosity
+    }
+
     /// Whether a cell can still be split.
     pub(super) fn has_children(&self, index: CellIndex) -> bool {
         (index as usize) < level_start(self.levels)

@@ -27,7 +27,10 @@ impl Mesh {
             patches: Vec::new(),
             elements: Vec::new(),
             vertices: Vec::new(),
+            buried: Vec::new(),
             weights: Vec::new(),
+            full_weights: Vec::new(),
+            continuation: Default::default(),
             at: FxHashMap::default(),
             limits,
         };

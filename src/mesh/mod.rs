@@ -7,6 +7,7 @@
 //! Imports `geometry`, `radiometry` and `scene`.
 
 mod build;
+mod buried;
 mod element;
 mod fan;
 mod lattice;
@@ -44,8 +45,14 @@ pub struct Mesh {
     pub elements: Vec<Element>,
     /// All vertices, in the order of their making.
     pub vertices: Vec<Vertex>,
-    /// The area that the interpolant gives to each vertex: the integral of an interpolated quantity is Σ weight · value.
+    /// Vertices inside a solid; see [`Mesh::continue_to_buried`].
+    pub buried: Vec<bool>,
+    /// The area that the interpolant gives to each vertex, 0 if it is buried: the integral of an interpolated quantity
+    /// over what is open is Σ weight · value.
     pub weights: Vec<f64>,
+    /// The same with the buried part.
+    pub full_weights: Vec<f64>,
+    continuation: buried::Continuation,
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
 }

@@ -97,16 +97,26 @@ impl Mesh {
                 self.elements[element].hanging = hanging;
             }
         }
-        self.weights.clear();
-        self.weights.resize(self.vertices.len(), 0.0);
+        self.full_weights.clear();
+        self.full_weights.resize(self.vertices.len(), 0.0);
         for element in 0..self.elements.len() as u32 {
             if self.elements[element as usize].is_leaf() {
                 for triangle in self.fan(element) {
                     let [a, b, c] = triangle.map(|v| self.position(v));
                     let third = (b - a).cross(c - a).length() / 6.0;
-                    triangle.iter().for_each(|v| self.weights[*v as usize] += third);
+                    triangle.iter().for_each(|v| self.full_weights[*v as usize] += third);
                 }
             }
         }
+        self.mark_buried(self.vertices.len() as u32, &[]);
+    }
+
+    /// Says which vertices from `first` on are buried; vertices not spoken of are open.
+    pub fn mark_buried(&mut self, first: u32, buried: &[bool]) {
+        self.buried.truncate(first as usize);
+        self.buried.extend_from_slice(buried);
+        self.buried.resize(self.vertices.len(), false);
+        self.weights = self.full_weights.iter().zip(&self.buried).map(|(w, buried)| if *buried { 0.0 } else { *w }).collect();
+        self.plan_continuation();
     }
 }

@@ -52,6 +52,10 @@ pub struct Options {
     /// How far the tolerance of tests 1 and 2 follows the light that is there: 0 for the reference alone, 1 for the local
     /// irradiance alone.
     pub local_share: f64,
+    /// How the tolerance of tests 1 and 2 grows as elements shrink below the first size h₀: by (h₀/h)^exponent. 0, as in the paper,
+    /// bounds the error at every point; 1 shares out the squared error evenly over the area, so that a shadow edge
+    /// is followed no further than it matters.
+    pub size_exponent: f64,
     /// What tests 1 and 2 compare.
     pub quantity: Quantity,
     /// Where refinement starts and ends.
@@ -102,6 +106,7 @@ impl Preset {
             epsilon_v: 0.25,
             visibility_significance: 0.05,
             local_share: 0.5,
+            size_exponent: 1.0,
             quantity: Quantity::Irradiance,
             limits: MeshLimits { initial_size: 0.125, max_depth: 10, min_size: 0.004 },
             meshing_power: 0.003,

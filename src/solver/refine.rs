@@ -1,7 +1,9 @@
 //! The three tests, in order of cost, on the elements that a shot has reached.
 
+use super::burial::buried;
+use super::escape::Backing;
 use super::options::{Options, Quantity};
-use super::shoot::{evaluate, receiver_at};
+use super::shoot::{evaluate, shoot_at};
 use super::state::Light;
 use crate::form_factor::{Gather, Receiver, Sampler, Source};
 use crate::mesh::{Lattice, Mesh, NONE};
@@ -17,6 +19,7 @@ pub(super) struct Refinement<'a> {
     pub sampler: &'a Sampler<'a>,
     pub source: &'a Source,
     pub options: &'a Options,
+    pub backing: &'a [Backing],
     /// The scene's reference irradiance.
     pub reference: f64,
     pub rays: u64,
@@ -66,7 +69,9 @@ impl Refinement<'_> {
         };
         let local = f64::from(self.light.irradiance[of.centre as usize].max_element());
         let share = self.options.local_share;
-        let scale = self.reference * (1.0 - share) + local * share;
+        let h0 = self.options.limits.initial_size * self.mesh.frame.extent();
+        let growth = (h0 / self.mesh.longest_side(element)).max(1.0).powf(self.options.size_exponent);
+        let scale = (self.reference * (1.0 - share) + local * share) * growth;
         f64::from((difference * weight).max_element()) > epsilon * scale
     }
 
@@ -146,14 +151,17 @@ impl Refinement<'_> {
         if fresh.is_empty() {
             return fresh;
         }
+        let first = first_vertex as u32;
         self.mesh.finish_topology();
-        let points: Vec<_> = (first_vertex as u32..self.mesh.vertices.len() as u32).map(|v| receiver_at(self.mesh, v)).collect();
-        let (gathers, rays) = evaluate(self.sampler, self.source, &points);
-        self.rays += rays;
-        for (vertex, gather) in (first_vertex..).zip(gathers) {
-            self.light.irradiance[vertex] += gather.irradiance;
-            self.light.unshot[vertex] += gather.irradiance;
-            self.arrived[vertex] = gather;
+        self.mesh.mark_buried(first, &buried(self.mesh, self.sampler.visibility, self.backing, first));
+        let open: Vec<u32> = (first..self.mesh.vertices.len() as u32).filter(|v| !self.mesh.buried[*v as usize]).collect();
+        self.rays += shoot_at(self.mesh, self.sampler, self.source, &open, self.arrived);
+        let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
+        self.mesh.continue_to_buried(&mut irradiance, first);
+        for vertex in first_vertex..self.mesh.vertices.len() {
+            self.arrived[vertex].irradiance = irradiance[vertex];
+            self.light.irradiance[vertex] += irradiance[vertex];
+            self.light.unshot[vertex] += irradiance[vertex];
         }
         fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
         fresh

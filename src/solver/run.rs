@@ -1,18 +1,20 @@
 //! The loop: select, shoot, refine, account, stop.
 
+use super::burial::buried;
 use super::escape::{Backing, escaped};
 use super::ledger::Ledger;
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::refine::Refinement;
-use super::shoot::{Points, evaluate, faces, receiver_at};
+use super::shoot::{faces, shoot_at};
 use super::source::source_of;
 use super::state::Light;
 use crate::form_factor::{Gather, Sampler, Source, SourceThresholds};
 use crate::mesh::Mesh;
-use crate::radiometry::Power;
+use crate::radiometry::{Power, Spectrum};
 use crate::scene::{Corners, Scene};
 use crate::visibility::{Triangles, Visibility};
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -83,7 +85,7 @@ pub fn occluders(scene: &Scene, mesh: &Mesh) -> Triangles {
 
 impl<'a> Solver<'a> {
     /// Prepares a solve of `scene` on its coarsest `mesh`; `visibility` answers for the scene's [`occluders`].
-    pub fn new(scene: &Scene, mesh: Mesh, visibility: &'a dyn Visibility, options: Options) -> Self {
+    pub fn new(scene: &Scene, mut mesh: Mesh, visibility: &'a dyn Visibility, options: Options) -> Self {
         let mut backing = Vec::new();
         let mut fronts = mesh.patches.iter().filter(|p| !p.back);
         for surface in &scene.surfaces {
@@ -91,6 +93,7 @@ impl<'a> Solver<'a> {
             let triangles = surface.corners.indices().len() - 2;
             backing.extend(std::iter::repeat_n(Backing { normal, sides: surface.sides }, triangles));
         }
+        mesh.mark_buried(0, &buried(&mesh, visibility, &backing, 0));
         let light = Light::new(&mesh);
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
         let emitted: f64 = mesh.patches.iter().map(|p| f64::from(p.exitance.max_element()) * p.area).sum();
@@ -169,21 +172,23 @@ impl<'a> Solver<'a> {
         }
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
-        self.escaped += escaped(&source, self.visibility, &self.backing, extent, rays, self.shots as u32);
+        let is_open = |point| self.is_open(shooter, point);
+        self.escaped += escaped(&source, self.visibility, &self.backing, is_open, extent, (rays, self.shots as u32));
         self.shots += 1;
     }
 
     fn shoot_at_vertices(&mut self, sampler: &Sampler, source: &Source, reached: &[bool]) -> Vec<Gather> {
         let patches = self.mesh.patches.iter().zip(reached).filter(|(_, reached)| **reached);
-        let vertices: Vec<u32> = patches.flat_map(|(patch, _)| patch.vertices.iter().copied()).collect();
-        let points: Points = vertices.iter().map(|v| receiver_at(&self.mesh, *v)).collect();
-        let (gathers, rays) = evaluate(sampler, source, &points);
-        self.rays += rays;
+        let vertices = patches.flat_map(|(patch, _)| patch.vertices.iter().copied());
+        let vertices: Vec<u32> = vertices.filter(|v| !self.mesh.buried[*v as usize]).collect();
         let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        for (vertex, gather) in vertices.into_iter().zip(gathers) {
-            self.light.irradiance[vertex as usize] += gather.irradiance;
-            self.light.unshot[vertex as usize] += gather.irradiance;
-            arrived[vertex as usize] = gather;
+        self.rays += shoot_at(&self.mesh, sampler, source, &vertices, &mut arrived);
+        let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
+        self.mesh.continue_to_buried(&mut irradiance, 0);
+        for (vertex, received) in irradiance.into_iter().enumerate() {
+            arrived[vertex].irradiance = received;
+            self.light.irradiance[vertex] += received;
+            self.light.unshot[vertex] += received;
         }
         arrived
     }
@@ -199,6 +204,7 @@ impl<'a> Solver<'a> {
                 sampler,
                 source,
                 options: &self.options,
+                backing: &self.backing,
                 reference: self.reference,
                 rays: 0,
             };
@@ -208,6 +214,14 @@ impl<'a> Solver<'a> {
                 return;
             }
         }
+    }
+
+    /// Whether the nearest vertex to a point of a patch is open.
+    fn is_open(&self, patch: usize, point: DVec3) -> bool {
+        let (u, v) = self.mesh.patches[patch].coordinates(point);
+        let weighted = self.mesh.interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
+        let nearest = weighted.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.is_none_or(|(vertex, _)| !self.mesh.buried[*vertex as usize])
     }
 
     fn source_thresholds(&self) -> SourceThresholds {

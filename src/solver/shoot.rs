@@ -7,10 +7,7 @@ use rayon::prelude::*;
 /// Vertices that are evaluated together: enough to fill packets on every level of the source, few enough to share out.
 const BLOCK: usize = 32;
 
-/// Points at which a source is evaluated, in the order of evaluation: neighbours together, so that their rays share packets.
-pub(super) type Points = Vec<(Receiver, u32)>;
-
-/// Evaluates `source` at each point; one result a point, and the number of rays. The same for any number of threads:
+/// Evaluates `source` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
 /// blocks depend on the list alone and no result on another.
 pub(super) fn evaluate(sampler: &Sampler, source: &Source, points: &[(Receiver, u32)]) -> (Vec<Gather>, u64) {
     let blocks: Vec<(Vec<Gather>, u64)> = points
@@ -25,8 +22,18 @@ pub(super) fn evaluate(sampler: &Sampler, source: &Source, points: &[(Receiver, 
     (blocks.into_iter().flat_map(|(gathers, _)| gathers).collect(), rays)
 }
 
+/// Evaluates `source` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
+pub(super) fn shoot_at(mesh: &Mesh, sampler: &Sampler, source: &Source, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
+    let points: Vec<_> = vertices.iter().map(|v| receiver_at(mesh, *v)).collect();
+    let (gathers, rays) = evaluate(sampler, source, &points);
+    for (vertex, gather) in vertices.iter().zip(gathers) {
+        arrived[*vertex as usize] = gather;
+    }
+    rays
+}
+
 /// A vertex as a receiver.
-pub(super) fn receiver_at(mesh: &Mesh, vertex: u32) -> (Receiver, u32) {
+fn receiver_at(mesh: &Mesh, vertex: u32) -> (Receiver, u32) {
     let of = &mesh.vertices[vertex as usize];
     (Receiver { point: of.point, normal: mesh.patches[of.patch as usize].normal }, vertex)
 }

@@ -10,10 +10,12 @@ use rayon::prelude::*;
 /// A triangle or parallelogram of coordinates on a patch; a triangle repeats its first corner.
 type Quad = [[f64; 2]; 4];
 
-/// The source that shoots all that `patch` has unshot. Its total power is exactly that of the interpolant.
+/// The source that shoots all that `patch` has unshot. Its total power is exactly that of the interpolant, buried parts
+/// included: rays find out that nothing leaves those.
 pub(super) fn source_of(mesh: &Mesh, light: &Light, patch: usize, options: &Options, thresholds: &SourceThresholds) -> Source {
     let of = &mesh.patches[patch];
-    let mean = light.unshot_power(mesh, patch) / of.area;
+    let full = |v: &u32| light.unshot_radiosity(mesh, *v).as_dvec3() * mesh.full_weights[*v as usize];
+    let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
     let peak = of.vertices.iter().map(|v| light.unshot_radiosity(mesh, *v).max_element()).fold(0.0, f32::max);
     // No form factor exceeds 1, so a source this dim is never split.
     let dim = !thresholds.raw && f64::from(peak) <= thresholds.difference.min(thresholds.estimate);
