@@ -1,7 +1,9 @@
 //! Progressive radiosity of polygonal diffuse scenes.
 #![deny(missing_docs)]
 
+pub mod output;
 pub mod radiometry;
+pub mod render;
 pub mod scene;
 pub mod solution;
 pub mod visibility;
