@@ -35,12 +35,13 @@ pub fn write_exr(
             let [r, g, b, a] = pixels[y * size.0 + x];
             (r, g, b, a)
         });
-        let mut attributes = LayerAttributes::default();
-        attributes.comments = Some(Text::from(
-            "Radiance, W m^-2 sr^-1, linear Rec. 709, premultiplied alpha",
-        ));
-        attributes.software_name =
-            Some(Text::from(concat!("radiosity ", env!("CARGO_PKG_VERSION"))));
+        let attributes = LayerAttributes {
+            comments: Some(Text::from(
+                "Radiance, W m^-2 sr^-1, linear Rec. 709, premultiplied alpha",
+            )),
+            software_name: Some(Text::from(concat!("radiosity ", env!("CARGO_PKG_VERSION")))),
+            ..LayerAttributes::default()
+        };
         let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
         let mut image = Image::from_layer(layer);
         image.attributes.chromaticities = Some(REC_709);
