@@ -4,7 +4,9 @@
 pub mod form_factor;
 pub mod geometry;
 pub mod mesh;
+pub mod output;
 pub mod radiometry;
+pub mod render;
 pub mod scene;
 pub mod solution;
 pub mod solver;
