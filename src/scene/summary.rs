@@ -2,7 +2,8 @@
 
 use super::polygon;
 use super::{Corners, Material, Scene, Sides, Surface};
-use crate::radiometry::{Power, exitance_from_radiance};
+use crate::radiometry::Power;
+use std::f64::consts::PI;
 use glam::DVec3;
 
 /// Counts and totals of a [`Scene`].
@@ -87,7 +88,7 @@ impl Scene {
         }
         for entry in &mut materials {
             entry.emitted_power =
-                exitance_from_radiance(entry.material.emitted_radiance).as_dvec3() * entry.area;
+                PI * entry.area * entry.material.emitted_radiance.as_dvec3();
         }
         let count = |test: fn(&Surface) -> bool| {
             self.surfaces.iter().filter(|surface| test(surface)).count()
