@@ -2,6 +2,28 @@
 //!
 //! One file a format reads into [`Scene`]. Imports `geometry` and `radiometry` only.
 
+mod cameras;
+mod duplicates;
+mod error;
+mod limits;
+mod load;
+mod materials;
+mod mtl;
+mod obj;
+mod obj_guard;
+mod polygon;
+mod settings;
+mod sides;
+mod split;
+mod summary;
+mod text;
+mod triangulate;
+mod warnings;
+mod weld;
+
+pub use error::SceneError;
+pub use summary::{MaterialSummary, Summary};
+
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
