@@ -51,7 +51,9 @@ impl Fans {
 
     /// Adds a target to the fan that was opened last.
     pub fn push(&mut self, target: Vec3) {
-        debug_assert!(self.x.len() - (*self.starts.last().expect("a fan is open") as usize) < MAX_FAN);
+        debug_assert!(
+            self.x.len() - (*self.starts.last().expect("a fan is open") as usize) < MAX_FAN
+        );
         self.x.push(target.x);
         self.y.push(target.y);
         self.z.push(target.z);
