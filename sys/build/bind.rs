@@ -53,6 +53,7 @@ fn compiler_include_args() -> Vec<String> {
     let include_dir = || {
         let compiler = cc::Build::new()
             .cargo_metadata(false)
+            .cargo_warnings(false)
             .try_get_compiler()
             .ok()?;
         let output = compiler

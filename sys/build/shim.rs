@@ -8,7 +8,6 @@ pub fn compile(embree: &Embree) -> Result<(), Missing> {
         .file("shim/shim.c")
         .include(&embree.include_dir)
         .define("EMBREE_MAJOR", embree.major.to_string().as_str())
-        .flag_if_supported("-std=c11")
         .warnings(true)
         .cargo_warnings(false)
         .try_compile("embree4_shim")
