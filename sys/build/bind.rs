@@ -10,7 +10,7 @@ const FUNCTIONS: &str = "rtc(NewDevice|ReleaseDevice|GetDeviceProperty|GetDevice
      |NewScene|ReleaseScene|SetSceneFlags|SetSceneBuildQuality|CommitScene\
      |NewGeometry|ReleaseGeometry|SetNewGeometryBuffer|CommitGeometry|AttachGeometry)|shim_.*";
 /// Constants without a function that mentions them.
-const CONSTANTS: &str = "RTC_INVALID_GEOMETRY_ID|RTC_VERSION|RTC_VERSION_STRING";
+const CONSTANTS: &str = "RTC_VERSION|RTC_VERSION_STRING";
 /// Enums whose values are combined with `|`.
 const FLAGS: &str = "RTCSceneFlags";
 
@@ -36,6 +36,7 @@ pub fn generate(embree: &Embree) -> Result<(), Missing> {
             is_global: false,
         })
         .bitfield_enum(FLAGS)
+        .derive_default(true)
         .rust_target(target)
         .formatter(bindgen::Formatter::None)
         .parse_callbacks(Box::new(bindgen::CargoCallbacks::new()))

@@ -13,6 +13,7 @@ CHECK_PACKET(8);
 CHECK_PACKET(16);
 _Static_assert(sizeof(struct RTCRay) == 48, "a ray has 12 fields");
 _Static_assert(sizeof(int) == 4, "a valid mask has 4 bytes a lane");
+_Static_assert(RTC_INVALID_GEOMETRY_ID == 0xffffffffu, "the ID that means none");
 _Static_assert(RTC_VERSION_MAJOR == EMBREE_MAJOR, "the header is of the version asked for");
 
 #if EMBREE_MAJOR == 4

@@ -19,3 +19,8 @@ mod bindings {
 
 #[cfg(embree)]
 pub use bindings::*;
+
+/// `RTC_INVALID_GEOMETRY_ID`, the geometry ID of a ray that hit nothing: a macro with a cast, which
+/// cannot be translated. The shim asserts its value.
+#[cfg(embree)]
+pub const INVALID_GEOMETRY_ID: u32 = u32::MAX;
