@@ -3,6 +3,25 @@
 //! One trait, three engines: `embree` (packets of occlusion rays through our own FFI crate), `bvh`
 //! (pure Rust over obvhs) and `brute_force` (every triangle, in double precision: the reference).
 //! Visibility knows triangles and nothing of patches or light. Imports `geometry` only.
+//!
+//! [`build`] chooses an engine by a fixed rule and hands it the triangles. All engines agree on what
+//! is asked: an open segment, either side of a triangle, an edge or corner counts as hit, and what
+//! single precision cannot trace (an origin or direction that is not finite, or is beyond
+//! [`COORDINATE_LIMIT`]) meets nothing. They do not agree on the last bit; callers keep the ends of their segments off surfaces.
+
+mod brute_force;
+mod bvh;
+mod choice;
+#[cfg(embree)]
+mod embree;
+mod triangles;
+
+pub use brute_force::BruteForce;
+pub use bvh::Obvhs;
+pub use choice::{EngineChoice, UnknownEngine, VisibilityError, build};
+#[cfg(embree)]
+pub use embree::Embree;
+pub use triangles::Triangles;
 
 use glam::Vec3;
 
@@ -13,14 +32,8 @@ pub const T_FAR: f32 = 1.0 - 1e-5;
 /// Most targets of one fan: a mask has one bit for each.
 pub const MAX_FAN: usize = 64;
 
-/// The triangles that can occlude, in a frame that suits single precision.
-#[derive(Debug, Clone, Default)]
-pub struct Triangles {
-    /// Finite positions.
-    pub vertices: Vec<Vec3>,
-    /// Indices into `vertices`; counter-clockwise seen from the front.
-    pub indices: Vec<[u32; 3]>,
-}
+/// The largest coordinate that is traced: a product of two of them is still a single-precision number.
+pub const COORDINATE_LIMIT: f32 = 1e18;
 
 /// Fans of segments: each from one origin (a receiving point) to at most [`MAX_FAN`] targets (sample
 /// points on one shooter). Filled by the caller, reused between queries; targets lie in three arrays.
@@ -51,7 +64,9 @@ impl Fans {
 
     /// Adds a target to the fan that was opened last.
     pub fn push(&mut self, target: Vec3) {
-        debug_assert!(self.x.len() - (*self.starts.last().expect("a fan is open") as usize) < MAX_FAN);
+        debug_assert!(
+            self.x.len() - (*self.starts.last().expect("a fan is open") as usize) < MAX_FAN
+        );
         self.x.push(target.x);
         self.y.push(target.y);
         self.z.push(target.z);
@@ -133,3 +148,16 @@ pub trait Visibility: Send + Sync {
     /// For each ray its nearest hit with t > 0, either side. Clears `hits` first; one entry a ray.
     fn nearest(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>);
 }
+
+/// Whether single precision can trace from `origin` along `direction`; false if anything is NaN.
+fn traceable(origin: Vec3, direction: Vec3) -> bool {
+    in_range(origin) && in_range(direction)
+}
+
+/// Whether all coordinates are numbers within [`COORDINATE_LIMIT`].
+fn in_range(v: Vec3) -> bool {
+    v.abs().cmple(Vec3::splat(COORDINATE_LIMIT)).all()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! All segments of a fan through the tree together.
+//!
+//! Because they share their origin, a box is moved to it once and a triangle is prepared once for all
+//! of them. An inner node is entered by the whole fan as soon as one segment enters it; in a leaf only
+//! the segments that enter its box are tested. A box contains those of its descendants, and every
+//! operation of the box test is monotonic, also when rounded; so a segment that enters a leaf's box
+//! enters all boxes above, and its answer is the same in whatever company it travels.
+
+use super::lanes::Lanes;
+use super::probe::Probe;
+use super::tree::{Content, Node, Tree};
+use crate::visibility::{Fans, MAX_FAN, T_FAR, T_NEAR, traceable};
+use glam::Vec3;
+
+/// Directions shorter than this along an axis count as this long: their inverse stays finite.
+const SHORTEST: f32 = 1e-18;
+/// The last of the products in the box test is enlarged by its six roundings and a reserve.
+const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
+
+/// The segments of one fan, up to 64, in arrays of one coordinate each.
+#[repr(align(64))]
+struct Segments {
+    direction: [[f32; MAX_FAN]; 3],
+    inverse: [[f32; MAX_FAN]; 3],
+    origin: Vec3,
+    /// Which segments are not known to be occluded.
+    active: u64,
+}
+
+/// Appends a mask for each fan.
+#[inline(always)]
+pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
+    let mut stack = Vec::with_capacity(tree.depth());
+    let mut segments = Segments {
+        direction: [[0.0; MAX_FAN]; 3],
+        inverse: [[0.0; MAX_FAN]; 3],
+        origin: Vec3::ZERO,
+        active: 0,
+    };
+    for fan in 0..fans.len() {
+        segments.fill(fans, fan);
+        let asked = segments.active;
+        segments.traverse::<L>(tree, &mut stack);
+        masks.push(asked & !segments.active);
+    }
+}
+
+impl Segments {
+    /// Takes fan `fan`; segments that cannot be traced are left out.
+    #[inline(always)]
+    fn fill(&mut self, fans: &Fans, fan: usize) {
+        let range = fans.range(fan);
+        let count = range.len();
+        self.origin = fans.origins[fan];
+        for (axis, targets) in [&fans.x, &fans.y, &fans.z].into_iter().enumerate() {
+            let targets = &targets[range.clone()];
+            let directions = &mut self.direction[axis][..count];
+            let inverses = &mut self.inverse[axis][..count];
+            for ((direction, inverse), target) in directions.iter_mut().zip(inverses).zip(targets) {
+                *direction = target - self.origin[axis];
+                let tiny = direction.abs() < SHORTEST;
+                *inverse = 1.0 / if tiny { SHORTEST } else { *direction };
+            }
+        }
+        self.active = (0..count).fold(0, |active, i| {
+            let direction = Vec3::from_array([0, 1, 2].map(|axis| self.direction[axis][i]));
+            active | u64::from(traceable(self.origin, direction)) << i
+        });
+    }
+
+    /// Clears the bits of occluded segments in `active`.
+    #[inline(always)]
+    fn traverse<L: Lanes>(&mut self, tree: &Tree, stack: &mut Vec<u32>) {
+        let Some(root) = &tree.root else { return };
+        stack.clear();
+        self.visit::<L>(tree, root, stack);
+        while let Some(pair) = stack.pop() {
+            let [left, right] = &tree.pairs[pair as usize].0;
+            self.visit::<L>(tree, right, stack);
+            self.visit::<L>(tree, left, stack);
+            if self.active == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Tests the triangles of a leaf, or puts off the children of an inner node, if a segment enters.
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, tree: &Tree, node: &Node, stack: &mut Vec<u32>) {
+        match node.content() {
+            Content::Inner(pair) => {
+                if self.entering::<L>(node, true) != 0 {
+                    stack.push(pair);
+                }
+            }
+            Content::Leaf(triangles) => {
+                let entering = self.entering::<L>(node, false);
+                if entering != 0 {
+                    for corners in &tree.corners[triangles] {
+                        self.test::<L>(&Probe::new(corners, self.origin), entering);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Mask of the active segments that enter a box; if `any` will do, not all of them.
+    #[inline(always)]
+    fn entering<L: Lanes>(&self, node: &Node, any: bool) -> u64 {
+        let mut min = [L::splat(0.0); 3];
+        let mut max = min;
+        for axis in 0..3 {
+            min[axis] = L::splat(node.min[axis] - self.origin[axis]);
+            max[axis] = L::splat(node.max[axis] - self.origin[axis]);
+        }
+        let (near, far) = (L::splat(T_NEAR), L::splat(T_FAR));
+        let mut mask = 0;
+        for group in (0..MAX_FAN).step_by(L::WIDTH) {
+            let active = self.active_in::<L>(group);
+            if active == 0 {
+                continue;
+            }
+            let (mut enter, mut leave) = (near, far);
+            for axis in 0..3 {
+                let inverse = L::load(&self.inverse[axis][group..]);
+                let (a, b) = (min[axis].mul(inverse), max[axis].mul(inverse));
+                enter = enter.max(a.min(b));
+                leave = leave.min(a.max(b));
+            }
+            let inside = enter.le(leave.mul(L::splat(ROUNDING))) & active;
+            mask |= u64::from(inside) << group;
+            if any && mask != 0 {
+                break;
+            }
+        }
+        mask
+    }
+
+    /// Tests the segments in `candidates` against one triangle.
+    #[inline(always)]
+    fn test<L: Lanes>(&mut self, probe: &Probe, candidates: u64) {
+        for group in (0..MAX_FAN).step_by(L::WIDTH) {
+            let candidates = (candidates >> group) as u32 & self.active_in::<L>(group);
+            if candidates == 0 {
+                continue;
+            }
+            let direction = [0, 1, 2].map(|axis| L::load(&self.direction[axis][group..]));
+            let crossed = probe.crossed(direction, L::splat(T_NEAR), L::splat(T_FAR));
+            self.active &= !(u64::from(crossed & candidates) << group);
+        }
+    }
+
+    /// The bits of the active segments from `group` on, as many as there are lanes.
+    #[inline(always)]
+    fn active_in<L: Lanes>(&self, group: usize) -> u32 {
+        ((self.active >> group) & ((1 << L::WIDTH) - 1)) as u32
+    }
+}

@@ -1,0 +1,61 @@
+//! The engine in pure Rust: obvhs builds the tree, our own traversal walks it.
+//!
+//! `tree` turns obvhs' binary tree into pairs of siblings, `probe` is the watertight test of a triangle
+//! seen from one origin, `fan` takes all segments of a fan through the tree together, in `lanes` of
+//! several numbers; `nearest` follows one ray to its first hit.
+
+mod fan;
+mod lanes;
+mod nearest;
+mod probe;
+mod tree;
+
+use super::{EngineInfo, Fans, Hit, MAX_FAN, Ray, Triangles, Visibility, VisibilityError};
+use tree::Tree;
+
+/// Version of obvhs in `Cargo.toml`; the crate does not tell it.
+const OBVHS_VERSION: &str = "0.4";
+
+/// A tree over the triangles, traversed by whole fans.
+#[derive(Debug)]
+pub struct Obvhs {
+    tree: Tree,
+}
+
+impl Obvhs {
+    /// Builds the tree, on one thread: its shape then depends on nothing but the triangles.
+    pub fn new(triangles: &Triangles) -> Result<Self, VisibilityError> {
+        triangles.validate()?;
+        Ok(Self {
+            tree: Tree::new(triangles),
+        })
+    }
+}
+
+impl Visibility for Obvhs {
+    fn info(&self) -> EngineInfo {
+        EngineInfo {
+            name: "obvhs",
+            version: OBVHS_VERSION.to_owned(),
+            isa: "portable".to_owned(),
+            packet_width: MAX_FAN as u32,
+        }
+    }
+
+    fn occluded(&self, fans: &Fans, masks: &mut Vec<u64>) {
+        masks.clear();
+        fan::occluded::<lanes::Portable>(&self.tree, fans, masks);
+    }
+
+    fn nearest(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+        hits.clear();
+        let mut stack = Vec::with_capacity(self.tree.depth());
+        hits.extend(
+            rays.iter()
+                .map(|ray| nearest::nearest(&self.tree, ray, &mut stack)),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests;
