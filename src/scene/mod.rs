@@ -108,7 +108,7 @@ impl Material {
 }
 
 /// A pinhole camera.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Camera {
     /// Names the picture files.
     pub name: String,
