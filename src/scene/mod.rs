@@ -74,7 +74,7 @@ pub struct Scene {
     pub name: String,
     /// Length of one scene unit in metres.
     pub metres_per_unit: f64,
-    /// Positions in scene units; surfaces index into it. All finite.
+    /// Positions in scene units; surfaces index into it. All finite, no two equal.
     pub vertices: Vec<DVec3>,
     /// Triangles and convex, planar quads.
     pub surfaces: Vec<Surface>,

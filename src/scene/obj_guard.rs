@@ -219,7 +219,7 @@ pub(super) fn rest_of<'a>(line: &'a str, keyword: &str) -> &'a str {
 
 fn index_range(vertices: i64) -> String {
     match vertices {
-        0 => "a vertex before it".to_owned(),
+        0 => "a vertex to refer to".to_owned(),
         n => format!("1 to {n}, or -{n} to -1"),
     }
 }

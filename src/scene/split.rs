@@ -79,7 +79,7 @@ pub(super) fn split(
         warnings,
         file,
         "polygon",
-        "crossing itself left out: light passes where it should be",
+        "whose boundary crosses itself left out: light passes there",
     );
     surfaces
 }

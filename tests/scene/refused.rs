@@ -147,11 +147,11 @@ fn indices() {
     );
     obj_is_refused(
         "f -1 -2 -3",
-        "it.obj:1: found the vertex index -1; expected a vertex before it",
+        "it.obj:1: found the vertex index -1; expected a vertex to refer to",
     );
     obj_is_refused(
         "f 1 2 3",
-        "it.obj:1: found the vertex index 1; expected a vertex before it",
+        "it.obj:1: found the vertex index 3; expected a vertex to refer to",
     );
     let forms = "expected a corner `v`, `v/vt`, `v//vn` or `v/vt/vn` of whole numbers";
     for corner in ["1.5", "x", "/1", "1/2/3/4", "1/x", "99999999999999999999"] {
