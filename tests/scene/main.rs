@@ -4,6 +4,7 @@ mod bundled;
 mod formats;
 mod mutations;
 mod refused;
+mod refused_settings;
 mod sides;
 mod splits;
 
