@@ -13,6 +13,8 @@ pub struct Receiver {
     pub point: DVec3,
     /// Unit normal of the side that receives.
     pub normal: DVec3,
+    /// What it has received so far, largest channel: thresholds follow it.
+    pub irradiance: f32,
 }
 
 /// The formula for a pair of a point and a source cell.

@@ -20,8 +20,34 @@ pub struct SourceThresholds {
     pub difference: f64,
     /// Split while the estimate exceeds this (ε_fe).
     pub estimate: f64,
-    /// Whether the thresholds are form factors, as in the paper, rather than irradiances (F · ΔB, largest channel).
+    /// Whether the thresholds are form factors, as in the paper, rather than multiples of an irradiance (F · ΔB, largest channel).
     pub raw: bool,
+    /// That irradiance.
+    pub scale: ToleranceScale,
+}
+
+/// The irradiance that relative thresholds are multiples of: between the scene's reference and what is there,
+/// `reference^(1 - share) · local^share`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToleranceScale {
+    /// The scene's reference irradiance.
+    pub reference: f64,
+    /// 0 for the reference alone, 1 for the local irradiance alone.
+    pub local_share: f64,
+}
+
+impl ToleranceScale {
+    /// The scale where the irradiance is `local`.
+    pub fn at(&self, local: f64) -> f64 {
+        if self.local_share == 0.0 { self.reference } else { self.reference * (local / self.reference).powf(self.local_share) }
+    }
+}
+
+/// The thresholds in force at one point, in the unit of what they are compared with.
+#[derive(Debug, Clone, Copy, Default)]
+struct Limits {
+    difference: f64,
+    estimate: f64,
 }
 
 /// What a point receives from one source.
@@ -86,6 +112,7 @@ enum State {
 /// Memory of a thread, reused between blocks.
 pub struct Scratch {
     leaves: Vec<Vec<Leaf>>,
+    limits: Vec<Limits>,
     pending: Vec<CellIndex>,
     fresh: Vec<usize>,
     state: Vec<State>,
@@ -98,6 +125,7 @@ impl Default for Scratch {
     fn default() -> Self {
         Self {
             leaves: Vec::new(),
+            limits: Vec::new(),
             pending: Vec::new(),
             fresh: Vec::new(),
             state: vec![State::Outside; (1 << (2 * (DEEPEST + 1))) / 3],
@@ -113,9 +141,12 @@ impl Sampler<'_> {
     pub fn gather(&self, source: &Source, receivers: &[(Receiver, u32)], scratch: &mut Scratch, gathers: &mut Vec<Gather>) -> u64 {
         scratch.leaves.resize_with(receivers.len().max(scratch.leaves.len()), Vec::new);
         scratch.fresh.clear();
+        scratch.limits.clear();
         for (i, (receiver, _)) in receivers.iter().enumerate() {
             scratch.leaves[i].clear();
-            self.partition(source, *receiver, &mut scratch.pending, &mut scratch.leaves[i]);
+            let limits = self.limits(source, *receiver);
+            self.partition(source, *receiver, limits, &mut scratch.pending, &mut scratch.leaves[i]);
+            scratch.limits.push(limits);
             scratch.fresh.push(0);
         }
         let mut rays = 0;
@@ -126,8 +157,8 @@ impl Sampler<'_> {
                 break;
             }
             for (i, (receiver, _)) in receivers.iter().enumerate() {
-                let Scratch { leaves, fresh, state, .. } = scratch;
-                fresh[i] = self.split_disagreeing(source, *receiver, &mut leaves[i], state);
+                let Scratch { leaves, limits, fresh, state, .. } = scratch;
+                fresh[i] = self.split_disagreeing(source, *receiver, limits[i], &mut leaves[i], state);
             }
         }
         gathers.clear();
@@ -135,8 +166,23 @@ impl Sampler<'_> {
         rays
     }
 
+    /// The thresholds at one point: they follow what it has, or what the source would give it if that is more.
+    fn limits(&self, source: &Source, receiver: Receiver) -> Limits {
+        let SourceThresholds { difference, estimate, raw, scale } = self.thresholds;
+        if raw {
+            return Limits { difference, estimate };
+        }
+        let from = |cell| {
+            let of = source.cell(cell);
+            let factor = point_to_disk(receiver.normal, of.centroid - receiver.point, source.normal(), of.area);
+            f64::from(of.radiosity.max_element()) * factor
+        };
+        let unit = scale.at(children(0).map(from).sum::<f64>().max(f64::from(receiver.irradiance)));
+        Limits { difference: difference * unit, estimate: estimate * unit }
+    }
+
     /// Step 1: the cells for one point, found without rays.
-    fn partition(&self, source: &Source, receiver: Receiver, pending: &mut Vec<CellIndex>, leaves: &mut Vec<Leaf>) {
+    fn partition(&self, source: &Source, receiver: Receiver, limits: Limits, pending: &mut Vec<CellIndex>, leaves: &mut Vec<Leaf>) {
         pending.clear();
         pending.extend((1..=4).rev());
         while let Some(cell) = pending.pop() {
@@ -146,12 +192,12 @@ impl Sampler<'_> {
             }
             let mut leaf = self.leaf(source, receiver, cell, &sight);
             if source.has_children(cell) {
-                if f64::from(leaf.measure) > self.thresholds.estimate {
+                if f64::from(leaf.measure) > limits.estimate {
                     pending.extend(children(cell).rev());
                     continue;
                 }
-                if let Some(parts) = self.parts(source, receiver, &leaf, &sight) {
-                    if parts.difference > self.thresholds.difference {
+                if let Some(parts) = self.parts(source, receiver, limits, &leaf, &sight) {
+                    if parts.difference > limits.difference {
                         pending.extend(children(cell).rev());
                         continue;
                     }
@@ -174,10 +220,10 @@ impl Sampler<'_> {
     }
 
     /// The estimate from the four parts of a cell; `None` where a bound shows that it is the cell's own.
-    fn parts(&self, source: &Source, receiver: Receiver, leaf: &Leaf, sight: &Sight) -> Option<Parts> {
+    fn parts(&self, source: &Source, receiver: Receiver, limits: Limits, leaf: &Leaf, sight: &Sight) -> Option<Parts> {
         let cell = source.cell(leaf.cell);
         let variation = if self.thresholds.raw { 0.0 } else { f64::from(cell.variation) * sight.form_factor };
-        if f64::from(leaf.measure) * sight.uncertainty + variation <= NEGLIGIBLE * self.thresholds.difference {
+        if f64::from(leaf.measure) * sight.uncertainty + variation <= NEGLIGIBLE * limits.difference {
             return None;
         }
         let (mut contribution, mut sum) = (Spectrum::ZERO, 0.0);
@@ -242,7 +288,7 @@ impl Sampler<'_> {
     }
 
     /// Step 3: replaces leaves that disagree with a neighbour by their children, at the end; gives where those begin.
-    fn split_disagreeing(&self, source: &Source, receiver: Receiver, leaves: &mut Vec<Leaf>, state: &mut [State]) -> usize {
+    fn split_disagreeing(&self, source: &Source, receiver: Receiver, limits: Limits, leaves: &mut Vec<Leaf>, state: &mut [State]) -> usize {
         let seen = leaves.iter().filter(|leaf| leaf.seen).count();
         if seen == 0 || seen == leaves.len() {
             return leaves.len();
@@ -252,7 +298,7 @@ impl Sampler<'_> {
             mark_ancestors(leaf.cell, state, State::Split);
         }
         let splits = |leaf: &Leaf| {
-            f64::from(leaf.measure) > self.thresholds.difference
+            f64::from(leaf.measure) > limits.difference
                 && source.has_children(leaf.cell)
                 && source.neighbours(leaf.cell).iter().flatten().any(|n| disagrees(*n, state[leaf.cell as usize], state))
         };

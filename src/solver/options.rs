@@ -37,8 +37,8 @@ pub enum FormFactorRule {
     Polygon,
 }
 
-/// All options of a solve. Thresholds marked *relative* are multiples of the reference irradiance, which is the emitted
-/// power over the area that receives.
+/// All options of a solve. Thresholds marked *relative* are multiples of an irradiance between the scene's reference (emitted
+/// power over the area of all patches) and the local one; see `local_share`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// Test 1, relative: an element is split while its corners differ by more (ε_d).
@@ -49,8 +49,7 @@ pub struct Options {
     pub epsilon_v: f64,
     /// Test 3 is asked where the shot, unoccluded, would give more than this; relative.
     pub visibility_significance: f64,
-    /// How far the tolerance of tests 1 and 2 follows the light that is there: 0 for the reference alone, 1 for the local
-    /// irradiance alone.
+    /// How far relative thresholds follow the light that is there: multiples of reference^(1 - share) · local^share.
     pub local_share: f64,
     /// How the tolerance of tests 1 and 2 grows as elements shrink below the first size h₀: by (h₀/h)^exponent. 0, as in the paper,
     /// bounds the error at every point; 1 shares out the squared error evenly over the area, so that a shadow edge

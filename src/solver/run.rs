@@ -9,7 +9,7 @@ use super::refine::Refinement;
 use super::shoot::{faces, shoot_at};
 use super::source::source_of;
 use super::state::Light;
-use crate::form_factor::{Gather, Sampler, Source, SourceThresholds};
+use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::{Corners, Scene};
@@ -182,7 +182,7 @@ impl<'a> Solver<'a> {
         let vertices = patches.flat_map(|(patch, _)| patch.vertices.iter().copied());
         let vertices: Vec<u32> = vertices.filter(|v| !self.mesh.buried[*v as usize]).collect();
         let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        self.rays += shoot_at(&self.mesh, sampler, source, &vertices, &mut arrived);
+        self.rays += shoot_at(&self.mesh, &self.light, sampler, source, &vertices, &mut arrived);
         let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, 0);
         for (vertex, received) in irradiance.into_iter().enumerate() {
@@ -205,7 +205,6 @@ impl<'a> Solver<'a> {
                 source,
                 options: &self.options,
                 backing: &self.backing,
-                reference: self.reference,
                 rays: 0,
             };
             candidates = refinement.pass(&candidates);
@@ -225,9 +224,12 @@ impl<'a> Solver<'a> {
     }
 
     fn source_thresholds(&self) -> SourceThresholds {
-        let raw = self.options.raw_form_factors;
-        let unit = if raw { 1.0 } else { self.reference };
-        SourceThresholds { difference: self.options.epsilon_fd * unit, estimate: self.options.epsilon_fe * unit, raw }
+        SourceThresholds {
+            difference: self.options.epsilon_fd,
+            estimate: self.options.epsilon_fe,
+            raw: self.options.raw_form_factors,
+            scale: ToleranceScale { reference: self.reference, local_share: self.options.local_share },
+        }
     }
 
     fn unshot_powers(&self) -> Vec<Power> {

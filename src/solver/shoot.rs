@@ -1,6 +1,7 @@
 //! One source evaluated at many vertices.
 
 use crate::form_factor::{Gather, Receiver, Sampler, Scratch, Source};
+use super::state::Light;
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
 
@@ -23,8 +24,8 @@ pub(super) fn evaluate(sampler: &Sampler, source: &Source, points: &[(Receiver, 
 }
 
 /// Evaluates `source` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
-pub(super) fn shoot_at(mesh: &Mesh, sampler: &Sampler, source: &Source, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
-    let points: Vec<_> = vertices.iter().map(|v| receiver_at(mesh, *v)).collect();
+pub(super) fn shoot_at(mesh: &Mesh, light: &Light, sampler: &Sampler, source: &Source, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
+    let points: Vec<_> = vertices.iter().map(|v| receiver_at(mesh, light, *v)).collect();
     let (gathers, rays) = evaluate(sampler, source, &points);
     for (vertex, gather) in vertices.iter().zip(gathers) {
         arrived[*vertex as usize] = gather;
@@ -33,9 +34,11 @@ pub(super) fn shoot_at(mesh: &Mesh, sampler: &Sampler, source: &Source, vertices
 }
 
 /// A vertex as a receiver.
-fn receiver_at(mesh: &Mesh, vertex: u32) -> (Receiver, u32) {
+fn receiver_at(mesh: &Mesh, light: &Light, vertex: u32) -> (Receiver, u32) {
     let of = &mesh.vertices[vertex as usize];
-    (Receiver { point: of.point, normal: mesh.patches[of.patch as usize].normal }, vertex)
+    let normal = mesh.patches[of.patch as usize].normal;
+    let irradiance = light.irradiance[vertex as usize].max_element();
+    (Receiver { point: of.point, normal, irradiance }, vertex)
 }
 
 /// Whether any part of `patch` can see any part of the source, planes alone considered.

@@ -17,8 +17,10 @@ pub(super) fn source_of(mesh: &Mesh, light: &Light, patch: usize, options: &Opti
     let full = |v: &u32| light.unshot_radiosity(mesh, *v).as_dvec3() * mesh.full_weights[*v as usize];
     let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
     let peak = of.vertices.iter().map(|v| light.unshot_radiosity(mesh, *v).max_element()).fold(0.0, f32::max);
-    // No form factor exceeds 1, so a source this dim is never split.
-    let dim = !thresholds.raw && f64::from(peak) <= thresholds.difference.min(thresholds.estimate);
+    // No form factor exceeds 1, so a source this dim is never split where thresholds do not follow the local light.
+    let unit = thresholds.scale.reference;
+    let fixed = !thresholds.raw && thresholds.scale.local_share == 0.0;
+    let dim = fixed && f64::from(peak) <= unit * thresholds.difference.min(thresholds.estimate);
     let levels = if dim { 1 } else { options.source_levels() };
     let constant = options.shooting == Shooting::Mean || of.vertices.iter().all(|v| light.unshot[*v as usize] == Spectrum::ZERO);
     let finest = if constant {
