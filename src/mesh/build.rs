@@ -2,7 +2,7 @@
 
 use super::{Element, Frame, Lattice, Mesh, NONE, Patch, UNIT};
 use crate::radiometry::exitance_from_radiance;
-use crate::scene::{Scene, Sides};
+use crate::scene::{Scene, Sides, Surface};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -34,16 +34,20 @@ impl Mesh {
             at: FxHashMap::default(),
             limits,
         };
+        let cuts = cuts(scene);
         for (number, surface) in scene.surfaces.iter().enumerate() {
+            let outline = outline(surface, &cuts);
             let mut corners: Vec<DVec3> = surface.corners.indices().iter().map(|v| frame.enter(scene.vertices[*v as usize])).collect();
             let material = &scene.materials[surface.material as usize];
             let mut front = Patch::new(number as u32, surface.polygon, &corners, false);
+            front.outline = outline;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
             mesh.add_patch(front);
             if surface.sides == Sides::Both {
                 corners.reverse();
                 let mut back = Patch::new(number as u32, surface.polygon, &corners, true);
+                back.outline = reversed(outline, back.corners().len());
                 back.reflectance = material.reflectance;
                 mesh.add_patch(back);
             }
@@ -104,6 +108,43 @@ impl Mesh {
             from = to;
         }
     }
+}
+
+/// Sides that two surfaces of one input polygon share: where it was cut.
+fn cuts(scene: &Scene) -> FxHashMap<(u32, u32, u32), u32> {
+    let mut uses = FxHashMap::default();
+    for surface in &scene.surfaces {
+        for side in sides(surface) {
+            *uses.entry(side).or_insert(0) += 1;
+        }
+    }
+    uses.retain(|_, count| *count > 1);
+    uses
+}
+
+fn sides(surface: &Surface) -> impl Iterator<Item = (u32, u32, u32)> {
+    let corners = surface.corners.indices();
+    (0..corners.len()).map(move |i| {
+        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+        (surface.polygon, a.min(b), a.max(b))
+    })
+}
+
+fn outline(surface: &Surface, cuts: &FxHashMap<(u32, u32, u32), u32>) -> [bool; 4] {
+    let mut outline = [true; 4];
+    for (slot, side) in outline.iter_mut().zip(sides(surface)) {
+        *slot = !cuts.contains_key(&side);
+    }
+    outline
+}
+
+/// The outline of the same polygon with its corners in reverse order.
+fn reversed(outline: [bool; 4], count: usize) -> [bool; 4] {
+    let mut back = [true; 4];
+    for (i, slot) in back.iter_mut().enumerate().take(count) {
+        *slot = outline[(2 * count - 2 - i) % count];
+    }
+    back
 }
 
 /// The middle of an element: the bilinear centre of a quad, the centroid of a triangle.

@@ -4,7 +4,7 @@
 pub const NONE: u32 = u32::MAX;
 
 /// A cell of the quadtree of a patch: the piece that receives and is interpolated over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Element {
     /// The patch that it is a part of.
     pub patch: u32,

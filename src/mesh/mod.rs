@@ -13,6 +13,7 @@ mod fan;
 mod lattice;
 mod patch;
 mod refine;
+mod restore;
 
 pub use build::MeshLimits;
 pub use element::{Element, NONE};
@@ -22,9 +23,10 @@ pub use patch::Patch;
 use crate::geometry::Frame;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
 /// A vertex: a corner or the centre of elements of one patch.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Vertex {
     /// The patch that it belongs to.
     pub patch: u32,
@@ -35,7 +37,7 @@ pub struct Vertex {
 }
 
 /// The adaptive mesh of a scene, without the light on it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Mesh {
     /// From scene to mesh coordinates.
     pub frame: Frame,
@@ -49,10 +51,14 @@ pub struct Mesh {
     pub buried: Vec<bool>,
     /// The area that the interpolant gives to each vertex, 0 if it is buried: the integral of an interpolated quantity
     /// over what is open is Σ weight · value.
+    #[serde(skip)]
     pub weights: Vec<f64>,
     /// The same with the buried part.
+    #[serde(skip)]
     pub full_weights: Vec<f64>,
+    #[serde(skip)]
     continuation: buried::Continuation,
+    #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
 }

@@ -6,7 +6,7 @@ use crate::radiometry::Spectrum;
 use glam::DVec3;
 
 /// A planar convex polygon that shoots, and carries elements that receive.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Patch {
     /// Index into `Scene::surfaces`.
     pub surface: u32,
@@ -15,6 +15,8 @@ pub struct Patch {
     /// Corners in the frame, counter-clockwise seen from the radiating side; a triangle repeats its first.
     corners: [DVec3; 4],
     corner_count: u8,
+    /// Which of its sides are sides of the input polygon, rather than cuts through it.
+    pub outline: [bool; 4],
     /// Whether it is the back of its surface.
     pub back: bool,
     /// Unit normal of the radiating side.
@@ -42,6 +44,7 @@ impl Patch {
             polygon,
             corners: [corners[0], corners[1], corners[2], *corners.get(3).unwrap_or(&corners[0])],
             corner_count: corners.len() as u8,
+            outline: [true; 4],
             back,
             normal: vector_area / area,
             area,
@@ -114,9 +117,21 @@ impl Patch {
         if self.is_triangle() { u == 0 || v == 0 || u + v == UNIT } else { u == 0 || v == 0 || u == UNIT || v == UNIT }
     }
 
-    /// Whether two lattice points lie on one side of the border.
-    pub fn share_border(&self, a: Lattice, b: Lattice) -> bool {
-        let both = |u, v| (a.u == u && b.u == u) || (a.v == v && b.v == v);
-        both(0, 0) || if self.is_triangle() { a.u + a.v == UNIT && b.u + b.v == UNIT } else { both(UNIT, UNIT) }
+    /// The side of the patch on which two lattice points lie, if they lie on one.
+    pub fn common_side(&self, a: Lattice, b: Lattice) -> Option<usize> {
+        let low = |x: [u32; 2]| x == [0, 0];
+        let high = |x: [u32; 2]| x == [UNIT, UNIT];
+        let (u, v, sum) = ([a.u, b.u], [a.v, b.v], [a.u + a.v, b.u + b.v]);
+        if low(v) {
+            Some(0)
+        } else if self.is_triangle() {
+            if high(sum) { Some(1) } else { low(u).then_some(2) }
+        } else if high(u) {
+            Some(1)
+        } else if high(v) {
+            Some(2)
+        } else {
+            low(u).then_some(3)
+        }
     }
 }

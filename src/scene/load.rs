@@ -128,6 +128,7 @@ fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Sce
     if surfaces.is_empty() {
         let found = match polygons.len() {
             0 => "no polygons".to_owned(),
+            1 => "one polygon, which cannot be used".to_owned(),
             n => format!("{n} polygons, none of which can be used"),
         };
         return Err(file.error(None, found, "at least one polygon with an area"));

@@ -36,21 +36,59 @@ pub(super) fn decide(
     for entry in &library.entries {
         let over =
             settings.and_then(|(file, s)| Some((file, s.material.get(&entry.name)?.get_ref())));
-        let reflectance = stated(&entry.reflectance, over, |m| m.reflectance.as_ref());
-        let radiance = stated(&entry.emitted_radiance, over, |m| {
-            m.emitted_radiance.as_ref()
-        });
-        materials.list.push(Material {
-            name: entry.name.clone(),
-            reflectance: reflectance
-                .map_or(Ok(Spectrum::splat(DEFAULT_REFLECTANCE)), judged_reflectance)?,
-            emitted_radiance: radiance.map_or(Ok(Spectrum::ZERO), judged_radiance)?,
-        });
-        materials
-            .sides
-            .push(over.and_then(|(_, m)| m.sides).unwrap_or(scene_rule));
+        let rule = over.and_then(|(_, material)| material.sides);
+        materials.list.push(material(entry, over)?);
+        materials.sides.push(rule.unwrap_or(scene_rule));
     }
     Ok(materials)
+}
+
+/// One material, as its MTL file and then the settings have it.
+fn material(
+    entry: &Entry,
+    over: Option<(&TextFile, &MaterialSettings)>,
+) -> Result<Material, SceneError> {
+    let name = entry.name.clone();
+    let mut reflectance = Spectrum::splat(DEFAULT_REFLECTANCE);
+    if let Some(stated) = stated(&entry.reflectance, over, |m| m.reflectance.as_ref()) {
+        // Judged as stored: a reflectance just below 1 must not become 1 by rounding.
+        reflectance = stated.channels.as_vec3();
+        if !reflectance
+            .to_array()
+            .iter()
+            .all(|c| (0.0..1.0).contains(c))
+        {
+            let expected = "0 <= reflectance < 1 in each channel";
+            return Err(stated.refused("reflectance", &name, expected));
+        }
+    }
+    let mut emitted_radiance = Spectrum::ZERO;
+    if let Some(stated) = stated(&entry.emitted_radiance, over, |m| {
+        m.emitted_radiance.as_ref()
+    }) {
+        emitted_radiance = stated.channels.as_vec3();
+        if !emitted_radiance
+            .to_array()
+            .iter()
+            .all(|c| *c >= 0.0 && c.is_finite())
+        {
+            let expected = "a finite radiance >= 0 in each channel";
+            return Err(stated.refused("emitted radiance", &name, expected));
+        }
+    }
+    Ok(Material {
+        name,
+        reflectance,
+        emitted_radiance,
+    })
+}
+
+impl Stated {
+    fn refused(&self, quantity: &str, material: &str, expected: &str) -> SceneError {
+        let DVec3 { x, y, z } = self.channels;
+        let found = format!("the {quantity} ({x}, {y}, {z}) of {}", quote(material));
+        SceneError::new(&self.file, self.line, found, expected)
+    }
 }
 
 /// Warns of materials that had to be made up, wholly or in part.
@@ -112,41 +150,6 @@ fn stated(
     overriding.or_else(|| own.clone())
 }
 
-fn judged_reflectance(stated: Stated) -> Result<Spectrum, SceneError> {
-    let spectrum = stated.channels.as_vec3();
-    // Compared as stored: a reflectance just below 1 must not become 1 by rounding.
-    let valid = spectrum
-        .to_array()
-        .iter()
-        .all(|channel| (0.0..1.0).contains(channel));
-    valid.then_some(spectrum).ok_or_else(|| {
-        let found = format!("the reflectance {}", listed(stated.channels));
-        SceneError::new(
-            &stated.file,
-            stated.line,
-            found,
-            "0 <= reflectance < 1 in each channel",
-        )
-    })
-}
-
-fn judged_radiance(stated: Stated) -> Result<Spectrum, SceneError> {
-    let spectrum = stated.channels.as_vec3();
-    let valid = spectrum
-        .to_array()
-        .iter()
-        .all(|channel| *channel >= 0.0 && channel.is_finite());
-    valid.then_some(spectrum).ok_or_else(|| {
-        let found = format!("the emitted radiance {}", listed(stated.channels));
-        SceneError::new(
-            &stated.file,
-            stated.line,
-            found,
-            "a finite radiance >= 0 in each channel",
-        )
-    })
-}
-
 fn refuse_unknown_names(
     file: &TextFile,
     settings: &Settings,
@@ -172,10 +175,6 @@ fn refuse_unknown_names(
             ))
         }
     }
-}
-
-fn listed(channels: DVec3) -> String {
-    format!("({}, {}, {})", channels.x, channels.y, channels.z)
 }
 
 /// The first few names of a list.

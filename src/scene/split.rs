@@ -44,9 +44,7 @@ pub(super) fn split(
         }
         corners.clear();
         corners.extend_from_slice(polygons.corners(polygon));
-        if remove_repeated_corners(&mut corners) {
-            repeated_corners.add(line);
-        }
+        let has_repeated_corner = remove_repeated_corners(&mut corners);
         positions.clear();
         positions.extend(
             corners
@@ -54,12 +52,17 @@ pub(super) fn split(
                 .map(|corner| polygons.positions[*corner as usize]),
         );
         match pieces(&positions) {
-            Ok(pieces) => surfaces.extend(pieces.iter().map(|piece| Surface {
-                corners: piece.corners(&corners),
-                material: polygons.materials[polygon],
-                polygon: polygon as u32,
-                sides: Sides::Front,
-            })),
+            Ok(pieces) => {
+                if has_repeated_corner {
+                    repeated_corners.add(line);
+                }
+                surfaces.extend(pieces.iter().map(|piece| Surface {
+                    corners: piece.corners(&corners),
+                    material: polygons.materials[polygon],
+                    polygon: polygon as u32,
+                    sides: Sides::Front,
+                }));
+            }
             Err(Unusable::NoArea) => without_area.add(line),
             Err(Unusable::CrossesItself) => crossing.add(line),
         }
@@ -76,7 +79,7 @@ pub(super) fn split(
         warnings,
         file,
         "polygon",
-        "crossing itself left out: light passes where it should be",
+        "whose boundary crosses itself left out: light passes there",
     );
     surfaces
 }

@@ -3,8 +3,8 @@
 use super::polygon;
 use super::{Corners, Material, Scene, Sides, Surface};
 use crate::radiometry::Power;
-use std::f64::consts::PI;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// Counts and totals of a [`Scene`].
 #[derive(Debug, Clone, PartialEq)]
@@ -47,25 +47,28 @@ pub struct MaterialSummary {
 impl Scene {
     /// The positions of a surface's corners, in scene units.
     pub fn positions(&self, surface: &Surface) -> impl ExactSizeIterator<Item = DVec3> {
-        let mut corners = [DVec3::ZERO; 4];
-        let indices = surface.corners.indices();
-        for (corner, index) in corners.iter_mut().zip(indices) {
-            *corner = self.vertices[*index as usize];
-        }
-        corners.into_iter().take(indices.len())
+        self.four_corners(surface)
+            .into_iter()
+            .take(surface.corners.indices().len())
     }
 
     /// The area of a surface, in square scene units.
     pub fn area(&self, surface: &Surface) -> f64 {
-        let corners: [DVec3; 4] = {
-            let mut positions = self.positions(surface);
-            std::array::from_fn(|_| {
-                positions
-                    .next()
-                    .unwrap_or(self.vertices[surface.corners.indices()[0] as usize])
-            })
+        polygon::area(&self.four_corners(surface))
+    }
+
+    /// The unit normal of a surface, on its front.
+    pub fn normal(&self, surface: &Surface) -> DVec3 {
+        polygon::doubled_area_vector(&self.four_corners(surface)).normalize_or(DVec3::Y)
+    }
+
+    /// The corners of a surface, the last of a triangle twice.
+    fn four_corners(&self, surface: &Surface) -> [DVec3; 4] {
+        let indices = match surface.corners {
+            Corners::Triangle([a, b, c]) => [a, b, c, c],
+            Corners::Quad(indices) => indices,
         };
-        polygon::area(&corners)
+        indices.map(|index| self.vertices[index as usize])
     }
 
     /// The lowest and the highest coordinates of all surfaces, in scene units.
@@ -87,8 +90,7 @@ impl Scene {
             entry.area += self.area(surface) * self.metres_per_unit * self.metres_per_unit;
         }
         for entry in &mut materials {
-            entry.emitted_power =
-                PI * entry.area * entry.material.emitted_radiance.as_dvec3();
+            entry.emitted_power = PI * entry.area * entry.material.emitted_radiance.as_dvec3();
         }
         let count = |test: fn(&Surface) -> bool| {
             self.surfaces.iter().filter(|surface| test(surface)).count()

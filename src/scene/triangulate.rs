@@ -1,7 +1,7 @@
 //! Triangles of a polygon with any number of corners: ears are cut off, then edges flipped until the
 //! triangulation is Delaunay within the polygon, then neighbours joined to quads.
 
-use super::polygon::{doubled_area_vector, is_planar, is_strictly_convex};
+use super::polygon::{doubled_area_vector, has_no_area, is_planar, is_strictly_convex};
 use super::split::Piece;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -16,6 +16,7 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     }
     let mut triangles = cut_ears(&points)?;
     flip_to_delaunay(&points, &mut triangles);
+    triangles.retain(|triangle| !has_no_area(&triangle.map(|corner| corners[corner])));
     Some(triangles)
 }
 
@@ -36,9 +37,13 @@ fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether two segments cross at a point inside both.
+/// Whether two segments cross, each end farther than a rounding error from the other segment's line.
+///
+/// Boundaries that touch, as where a hole is tied to the rim by a cut, must not count as crossing.
 fn cross_properly([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
-    let apart = |p: f64, q: f64| p * q < 0.0;
+    const ROUNDING: f64 = 1e-9;
+    let reach = ROUNDING * (b - a).length() * (d - c).length();
+    let apart = |p: f64, q: f64| (p > reach && q < -reach) || (p < -reach && q > reach);
     apart(orient(a, b, c), orient(a, b, d)) && apart(orient(c, d, a), orient(c, d, b))
 }
 

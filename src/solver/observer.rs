@@ -34,7 +34,7 @@ pub enum Control {
 }
 
 /// Hears of a solve after each batch of work: within a shot after every pass of refinement, and after the shot.
-pub trait Observer {
+pub trait Observer: Send {
     /// Called between batches, from the thread that solves.
     fn progress(&mut self, progress: &Progress) -> Control;
 }

@@ -4,7 +4,7 @@ use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 
 /// Irradiance at the vertices, and what of it has not been shot.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Light {
     /// Irradiance E received so far, W/m², by vertex.
     pub irradiance: Vec<Spectrum>,
