@@ -60,24 +60,14 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 11] = [
+const IMPORTS: [(&str, &[&str]); 12] = [
     ("geometry", &[]),
     ("radiometry", &[]),
     ("scene", &["geometry", "radiometry"]),
     ("visibility", &["geometry"]),
     ("form_factor", &["geometry", "radiometry", "visibility"]),
     ("mesh", &["geometry", "radiometry", "scene"]),
-    (
-        "solver",
-        &[
-            "geometry",
-            "radiometry",
-            "mesh",
-            "form_factor",
-            "visibility",
-            "scene",
-        ],
-    ),
+    ("solver", SOLVER),
     (
         "solution",
         &["geometry", "radiometry", "scene", "mesh", "solver"],
@@ -87,9 +77,22 @@ const IMPORTS: [(&str, &[&str]); 11] = [
         "render",
         &["geometry", "radiometry", "scene", "visibility", "solution"],
     ),
-    ("cli", ALL),
+    (
+        "pipeline",
+        &["scene", "visibility", "mesh", "solver", "solution"],
+    ),
+    ("cli", CLI),
 ];
-const ALL: &[&str] = &[
+const SOLVER: &[&str] = &[
+    "geometry",
+    "radiometry",
+    "scene",
+    "visibility",
+    "form_factor",
+    "mesh",
+];
+/// The command may use all that the library offers.
+const CLI: &[&str] = &[
     "geometry",
     "radiometry",
     "scene",
@@ -100,6 +103,7 @@ const ALL: &[&str] = &[
     "solution",
     "output",
     "render",
+    "pipeline",
 ];
 
 /// Crates that are the language we speak rather than a choice of one room: vectors, threads, derives, a hasher.
