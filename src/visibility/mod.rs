@@ -87,6 +87,14 @@ impl Fans {
         self.x.len()
     }
 
+    /// All segments, from origin to target, fan by fan.
+    pub fn iter(&self) -> impl Iterator<Item = (Vec3, Vec3)> + '_ {
+        (0..self.len()).flat_map(move |fan| {
+            let target = |i| Vec3::new(self.x[i], self.y[i], self.z[i]);
+            self.range(fan).map(move |i| (self.origins[fan], target(i)))
+        })
+    }
+
     /// The range of fan `i` in the target arrays.
     pub(crate) fn range(&self, i: usize) -> std::ops::Range<usize> {
         let end = self.starts.get(i + 1).map_or(self.x.len(), |&s| s as usize);

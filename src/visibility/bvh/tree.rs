@@ -101,32 +101,56 @@ impl Tree {
         self.depth
     }
 
-    /// Copies the nodes in depth-first order, so that no stack depth and no order of obvhs' is relied on.
+    /// Copies the nodes in depth-first order, so that no order of obvhs' is relied on, and measures
+    /// the depth.
     fn copy_nodes(&mut self, bvh: &Bvh2, padding: f32) {
-        let mut root = padded(&bvh.nodes[0], padding);
-        // Where to put a pair, which nodes it consists of, how deep it lies.
-        let mut waiting: Vec<(Option<(usize, usize)>, usize, usize)> = Vec::new();
+        let root = padded(&bvh.nodes[0], padding);
+        let mut waiting = Vec::new();
         if root.count == 0 {
-            waiting.push((None, root.first as usize, 1));
-            root.first = 0;
+            waiting.push(Waiting {
+                source: root.first as usize,
+                parent: None,
+                depth: 1,
+            });
         }
-        while let Some((parent, source, depth)) = waiting.pop() {
-            self.depth = self.depth.max(depth);
-            let index = self.pairs.len();
+        while let Some(Waiting {
+            source,
+            parent,
+            depth,
+        }) = waiting.pop()
+        {
+            let pair = self.pairs.len();
             let children = [source, source + 1].map(|i| padded(&bvh.nodes[i], padding));
             self.pairs.push(Pair(children));
-            if let Some((pair, side)) = parent {
-                self.pairs[pair].0[side].first = index as u32;
+            self.depth = self.depth.max(depth);
+            if let Some((parent, side)) = parent {
+                self.pairs[parent].0[side].first = pair as u32;
             }
             for side in [1, 0] {
-                if children[side].count == 0 {
-                    let source = children[side].first as usize;
-                    waiting.push((Some((index, side)), source, depth + 1));
+                let Node { first, count, .. } = children[side];
+                if count == 0 {
+                    let (source, parent) = (first as usize, Some((pair, side)));
+                    waiting.push(Waiting {
+                        source,
+                        parent,
+                        depth: depth + 1,
+                    });
                 }
             }
         }
-        self.root = Some(root);
+        // An inner root's children are the pair that was copied first.
+        let first = if root.count == 0 { 0 } else { root.first };
+        self.root = Some(Node { first, ..root });
     }
+}
+
+/// A pair of siblings still to be copied.
+struct Waiting {
+    /// Index of the first of them in obvhs' nodes.
+    source: usize,
+    /// Pair and side of their parent.
+    parent: Option<(usize, usize)>,
+    depth: usize,
 }
 
 /// What boxes are enlarged by: 4 units in the last place of the largest coordinate. A segment in the
