@@ -144,7 +144,12 @@ impl Segments {
             if candidates == 0 {
                 continue;
             }
-            let direction = [0, 1, 2].map(|axis| L::load(&self.direction[axis][group..]));
+            let [x, y, z] = &self.direction;
+            let direction = [
+                L::load(&x[group..]),
+                L::load(&y[group..]),
+                L::load(&z[group..]),
+            ];
             let crossed = probe.crossed(direction, L::splat(T_NEAR), L::splat(T_FAR));
             self.active &= !(u64::from(crossed & candidates) << group);
         }

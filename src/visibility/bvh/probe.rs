@@ -34,7 +34,11 @@ impl Probe {
     /// Looks at a triangle from `origin`.
     #[inline(always)]
     pub fn new(corners: &[Vec3; 3], origin: Vec3) -> Self {
-        let [a, b, c] = corners.map(|corner| corner - origin);
+        let [a, b, c] = [
+            corners[0] - origin,
+            corners[1] - origin,
+            corners[2] - origin,
+        ];
         // (p + q) × (q - p) is 2 p × q, and cancels less where the triangle is far and small.
         let edge = |p: Vec3, q: Vec3| (p + q).cross(q - p);
         let normal = (b - a).cross(c - a);
@@ -48,7 +52,8 @@ impl Probe {
     /// Which of the lanes cross the triangle between `near` and `far`, in lengths of their directions.
     #[inline(always)]
     pub fn crossed<L: Lanes>(&self, direction: [L; 3], near: L, far: L) -> u32 {
-        let [u, v, w] = self.edges.map(|edge| dot(direction, edge));
+        let [a, b, c] = self.edges;
+        let (u, v, w) = (dot(direction, a), dot(direction, b), dot(direction, c));
         let zero = L::splat(0.0);
         let least = u.min(v).min(w);
         let most = u.max(v).max(w);
