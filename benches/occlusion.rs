@@ -144,7 +144,10 @@ mod raw {
     }
 
     fn packets(fans: &Fans) -> Vec<sys::RTCRay16> {
-        let mut segments = fans.iter();
+        let mut segments = (0..fans.len()).flat_map(|fan| {
+            let (origin, targets) = fans.fan(fan);
+            targets.map(move |target| (origin, target))
+        });
         let mut packets = Vec::new();
         for _ in 0..fans.segments() / WIDTH {
             let mut packet = sys::RTCRay16 {

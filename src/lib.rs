@@ -1,7 +1,45 @@
-//! Progressive radiosity of polygonal diffuse scenes.
+//! Progressive radiosity of polygonal diffuse scenes, after Lee & Chuang, *Effective Meshing and Form Factor Calculation
+//! for Accurate Progressive Radiosity*.
+//!
+//! ```text
+//! file ─scene→ Scene ─mesh→ Mesh ─solver(shoot ⇄ refine)→ Solution ─output/render→ files
+//!                     └────── triangles ─→ Visibility ───────┘
+//! ```
+//!
+//! [`solve`] goes from a [`scene::Scene`] to a [`solution::Solution`] in one call; the rooms below are its parts:
+//!
+//! * [`geometry`]: polygons, the frame of a solve; [`radiometry`]: the quantities and their units
+//! * [`scene`]: what the file says; [`visibility`]: who sees whom, by Embree, obvhs or brute force
+//! * [`form_factor`]: Eq. (1), Eq. (2), the five-times rule and the adaptively sampled source
+//! * [`mesh`]: patches, quadtrees and the interpolant; [`solver`]: select, shoot, refine, account
+//! * [`solution`]: the result, probing, its report and file; [`output`], [`render`]: files and pictures
+//!
+//! # Conventions
+//!
+//! Lengths are in scene units (metres unless the scene says otherwise), right-handed, y up; a polygon is counter-clockwise seen
+//! from its front. Colour is linear Rec. 709. A mesh stores irradiance E; radiosity is B = M + ρE, radiance B/π.
+//!
+//! # Architecture invariants
+//!
+//! * Imports run one way, as each room's first paragraph says.
+//! * The solver does no I/O and prints nothing; it speaks to a [`solver::Observer`].
+//! * `unsafe` lives in the crate `embree4-sys` and in [`visibility`] only.
+//! * The same input, engine and instruction set give the same bits for any number of threads.
+//!
+//! `tests/tidy.rs` and `tests/solve.rs` hold them.
 #![deny(missing_docs)]
 
+pub mod cli;
+pub mod form_factor;
+pub mod geometry;
+pub mod mesh;
+pub mod output;
+mod pipeline;
 pub mod radiometry;
+pub mod render;
 pub mod scene;
 pub mod solution;
+pub mod solver;
 pub mod visibility;
+
+pub use pipeline::{Settings, SolveError, solve};

@@ -1,1 +1,5 @@
-fn main() {}
+//! The command `radiosity`; see `radiosity --help`.
+
+fn main() -> std::process::ExitCode {
+    radiosity::cli::main()
+}

@@ -1,6 +1,68 @@
 //! What the file says: surfaces, materials and cameras, validated; nothing is subdivided.
 //!
 //! One file a format reads into [`Scene`]. Imports `geometry` and `radiometry` only.
+//!
+//! # The scene file
+//!
+//! A scene is a Wavefront OBJ file, its MTL files, and a `scene.toml` for what those cannot say. All keys but
+//! `geometry` may be left out.
+//!
+//! ```toml
+//! name = "Cornell box"          # for reports; else the stem of the geometry's file
+//! geometry = "cornell-box.obj"  # in the folder of this file, or below
+//! unit = "mm"                   # m (default), cm, mm, in or ft; or metres_per_unit = 0.001
+//! sides = "auto"                # front, both, or auto (default): see below
+//!
+//! [material.white]              # overrides what the MTL file says
+//! reflectance = [0.725, 0.71, 0.68]  # or one number for all channels; 0 <= reflectance < 1
+//! emitted_radiance = 0               # W m⁻² sr⁻¹
+//! sides = "both"
+//!
+//! [[camera]]                    # any number; without one there is a view of the whole scene
+//! name = "front"                # becomes part of the pictures' file names
+//! eye = [278, 273, -800]        # in the scene's unit
+//! look_at = [278, 273, 0]
+//! up = [0, 1, 0]                # default
+//! horizontal_fov = 39.3         # degrees, default 45
+//! width = 1024                  # default
+//! height = 768                  # default
+//! exposure = 0.5                # stops; else chosen from the picture
+//! ```
+//!
+//! In MTL files `Kd` is the reflectance and `Ke` the emitted radiance; nothing else is used. Polygons without
+//! a material get the one named `default`.
+//!
+//! `auto` makes closed, consistently oriented sets of polygons radiate from the front, all others from both
+//! sides. Emitted light leaves the front in every case.
+//!
+//! # Polygons
+//!
+//! Triangles and convex planar quads stay as they are. A quad whose corners miss their plane by more than 1e-5
+//! of its size, or that is concave, becomes two triangles; a polygon with more corners becomes a constrained
+//! Delaunay triangulation in which well-shaped neighbours are joined to quads. Left out with a warning are
+//! repetitions, polygons without area and polygons whose boundary crosses itself.
+
+mod cameras;
+mod duplicates;
+mod error;
+mod limits;
+mod load;
+mod materials;
+mod mtl;
+mod obj;
+mod obj_guard;
+mod polygon;
+mod settings;
+mod sides;
+mod split;
+mod summary;
+mod text;
+mod triangulate;
+mod warnings;
+mod weld;
+
+pub use error::SceneError;
+pub use summary::{MaterialSummary, Summary};
 
 use crate::radiometry::Spectrum;
 use glam::DVec3;
@@ -12,7 +74,7 @@ pub struct Scene {
     pub name: String,
     /// Length of one scene unit in metres.
     pub metres_per_unit: f64,
-    /// Positions in scene units; surfaces index into it. All finite.
+    /// Positions in scene units; surfaces index into it. All finite, no two equal.
     pub vertices: Vec<DVec3>,
     /// Triangles and convex, planar quads.
     pub surfaces: Vec<Surface>,
@@ -86,7 +148,7 @@ impl Material {
 }
 
 /// A pinhole camera.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Camera {
     /// Names the picture files.
     pub name: String,

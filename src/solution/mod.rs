@@ -1,7 +1,41 @@
-//! The result: a mesh with light on it, its conforming triangulation, probing, and the report.
+//! The result: a mesh with light on it, its conforming triangulation, probing, the report, and the file that keeps it all.
 //!
-//! Imports `radiometry` and `mesh`.
+//! Imports `geometry`, `radiometry`, `scene`, `mesh`, and of the solver what a solve leaves behind.
 
+mod conform;
+mod file;
 mod lit_mesh;
+mod probe;
+mod report;
 
+pub use file::SolutionError;
 pub use lit_mesh::{LitMesh, LitTriangle, LitVertex};
+pub use probe::{MATCH, Probe, Prober};
+pub use report::{EngineReport, PowerReport, Report, Seconds};
+
+use crate::mesh::Mesh;
+use crate::scene::Camera;
+use crate::solver::Light;
+use serde::{Deserialize, Serialize};
+
+/// A solved scene: what `solve` leaves and the other commands read back.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Solution {
+    /// The facts of the solve.
+    pub report: Report,
+    /// The scene's cameras.
+    pub cameras: Vec<Camera>,
+    /// Length of one scene unit in metres.
+    pub metres_per_unit: f64,
+    /// The adaptive mesh.
+    pub mesh: Mesh,
+    /// The light on it.
+    pub light: Light,
+}
+
+impl Solution {
+    /// The solution as conforming triangles.
+    pub fn lit_mesh(&self) -> LitMesh {
+        conform::conform(&self.mesh, &self.light)
+    }
+}

@@ -87,12 +87,10 @@ impl Fans {
         self.x.len()
     }
 
-    /// All segments, from origin to target, fan by fan.
-    pub fn iter(&self) -> impl Iterator<Item = (Vec3, Vec3)> + '_ {
-        (0..self.len()).flat_map(move |fan| {
-            let target = |i| Vec3::new(self.x[i], self.y[i], self.z[i]);
-            self.range(fan).map(move |i| (self.origins[fan], target(i)))
-        })
+    /// Origin and targets of fan `i`.
+    pub fn fan(&self, i: usize) -> (Vec3, impl ExactSizeIterator<Item = Vec3> + '_) {
+        let targets = self.range(i).map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
+        (self.origins[i], targets)
     }
 
     /// The range of fan `i` in the target arrays; a mask has room for it.

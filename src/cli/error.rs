@@ -1,0 +1,54 @@
+//! What can go wrong, and the exit code it gives.
+
+use crate::output::WriteError;
+use crate::scene::SceneError;
+use crate::solution::SolutionError;
+use crate::visibility::VisibilityError;
+use crate::SolveError;
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// How the process ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Code {
+    Success = 0,
+    Failure = 1,
+    BadInput = 3,
+    Interrupted = 130,
+}
+
+impl From<Code> for ExitCode {
+    fn from(code: Code) -> Self {
+        ExitCode::from(code as u8)
+    }
+}
+
+#[derive(Debug, Error)]
+pub(super) enum CliError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Solution(#[from] SolutionError),
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error(transparent)]
+    Visibility(#[from] VisibilityError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// An input that is not a scene or solution.
+    #[error("{0}")]
+    Input(String),
+    /// Something else that the system refused.
+    #[error("{0}")]
+    System(String),
+}
+
+impl CliError {
+    pub(super) fn code(&self) -> Code {
+        match self {
+            CliError::Scene(_) | CliError::Solution(_) | CliError::Input(_) => Code::BadInput,
+            _ => Code::Failure,
+        }
+    }
+}

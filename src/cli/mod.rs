@@ -1,0 +1,54 @@
+//! The command line: one file a subcommand. The only user of clap, indicatif and ctrlc; may import everything public.
+
+mod error;
+mod flags;
+mod info;
+mod pictures;
+mod probe;
+mod progress;
+mod render;
+mod solve;
+
+use clap::{Parser, Subcommand};
+use error::CliError;
+use std::process::ExitCode;
+
+/// Progressive radiosity: the view-independent diffuse light of polygonal scenes.
+#[derive(Debug, Parser)]
+#[command(version, about, long_about = None, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 success, 1 failure while running or writing, 2 wrong usage, 3 unusable input, \
+130 interrupted (the solution so far is written)";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a scene: writes the solution, a lit mesh, pictures and a report.
+    Solve(solve::Arguments),
+    /// Draw pictures of a solution.
+    Render(render::Arguments),
+    /// Read the light at points of a solution.
+    Probe(probe::Arguments),
+    /// Say what a scene holds, without solving it.
+    Info(info::Arguments),
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Probe(arguments) => probe::run(&arguments),
+        Command::Info(arguments) => info::run(&arguments),
+    };
+    match result {
+        Ok(code) => code.into(),
+        Err(error) => {
+            eprintln!("error: {error}");
+            error.code().into()
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! How much of what a point sees is a given polygon: Eq. (1), Eq. (2), the rule that chooses between them, and the
+//! adaptively sampled source.
+//!
+//! F(x, s) is the cosine-weighted fraction of the hemisphere above x that the polygon s fills, so that the
+//! irradiance is E(x) = Σ F(x, s) B(s). Imports `geometry`, `radiometry` and the visibility trait.
+
+mod disk;
+mod edge;
+mod hybrid;
+mod polygon;
+mod sampling;
+mod source;
+
+pub use disk::point_to_disk;
+pub use hybrid::{Formula, Receiver};
+pub use polygon::{point_to_polygon, point_to_visible_polygon};
+pub use sampling::{Gather, Sampler, Scratch, SourceThresholds};
+pub use source::{Cell, DEEPEST, Source, SourceShape};

@@ -1,0 +1,167 @@
+//! From a scene to its coarsest mesh.
+
+use super::{Element, Frame, Lattice, Mesh, NONE, Patch, UNIT};
+use crate::radiometry::exitance_from_radiance;
+use crate::scene::{Scene, Sides, Surface};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+/// How coarse the mesh starts and how fine it may become.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MeshLimits {
+    /// The first elements are no longer than this fraction of the scene's extent.
+    pub initial_size: f64,
+    /// Elements are split to this level of the quadtree and no further.
+    pub max_depth: u32,
+    /// Elements whose longest side is below this fraction of the scene's extent are not split.
+    pub min_size: f64,
+}
+
+impl Mesh {
+    /// The coarsest mesh: a patch for each radiating side, a grid of nearly square elements on each quad patch, one
+    /// element on each triangle, split until `limits.initial_size` holds.
+    pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
+        let frame = Frame::of(scene.surfaces.iter().flat_map(|s| s.corners.indices()).map(|v| scene.vertices[*v as usize]));
+        let mut mesh = Self {
+            frame,
+            patches: Vec::new(),
+            elements: Vec::new(),
+            vertices: Vec::new(),
+            buried: Vec::new(),
+            weights: Vec::new(),
+            full_weights: Vec::new(),
+            continuation: Default::default(),
+            at: FxHashMap::default(),
+            limits,
+        };
+        let cuts = cuts(scene);
+        for (number, surface) in scene.surfaces.iter().enumerate() {
+            let outline = outline(surface, &cuts);
+            let mut corners: Vec<DVec3> = surface.corners.indices().iter().map(|v| frame.enter(scene.vertices[*v as usize])).collect();
+            let material = &scene.materials[surface.material as usize];
+            let mut front = Patch::new(number as u32, surface.polygon, &corners, false);
+            front.outline = outline;
+            front.reflectance = material.reflectance;
+            front.exitance = exitance_from_radiance(material.emitted_radiance);
+            mesh.add_patch(front);
+            if surface.sides == Sides::Both {
+                corners.reverse();
+                let mut back = Patch::new(number as u32, surface.polygon, &corners, true);
+                back.outline = reversed(outline, back.corners().len());
+                back.reflectance = material.reflectance;
+                mesh.add_patch(back);
+            }
+        }
+        mesh.split_to_initial_size();
+        mesh.finish_topology();
+        mesh
+    }
+
+    /// What bounds the refinement.
+    pub fn limits(&self) -> &MeshLimits {
+        &self.limits
+    }
+
+    fn add_patch(&mut self, mut patch: Patch) {
+        let id = self.patches.len() as u32;
+        let first = self.elements.len() as u32;
+        patch.grid = grid_of(&patch);
+        let (columns, rows) = patch.grid;
+        self.patches.push(patch);
+        if self.patches[id as usize].is_triangle() {
+            self.add_root(id, &[Lattice::new(0, 0), Lattice::new(UNIT, 0), Lattice::new(0, UNIT)]);
+        } else {
+            let (du, dv) = (UNIT / columns, UNIT / rows);
+            for row in 0..rows {
+                for column in 0..columns {
+                    let (u, v) = (column * du, row * dv);
+                    let corners = [(u, v), (u + du, v), (u + du, v + dv), (u, v + dv)];
+                    self.add_root(id, &corners.map(|(u, v)| Lattice::new(u, v)));
+                }
+            }
+        }
+        self.patches[id as usize].roots = first..self.elements.len() as u32;
+    }
+
+    fn add_root(&mut self, patch: u32, corners: &[Lattice]) {
+        let centre = centre_of(corners);
+        let centre_position = self.patches[patch as usize].position(centre);
+        let mut element =
+            Element { patch, corners: [NONE; 4], centre: NONE, hanging: [NONE; 4], children: NONE, level: 0 };
+        for (slot, corner) in element.corners.iter_mut().zip(corners) {
+            *slot = self.vertex(patch, *corner, centre_position);
+        }
+        element.centre = self.vertex(patch, centre, centre_position);
+        self.elements.push(element);
+    }
+
+    fn split_to_initial_size(&mut self) {
+        let longest = self.limits.initial_size * self.frame.extent();
+        let mut from = 0;
+        while from < self.elements.len() {
+            let to = self.elements.len();
+            for element in from as u32..to as u32 {
+                if self.longest_side(element) > longest && self.may_split(element) {
+                    self.split(element);
+                }
+            }
+            from = to;
+        }
+    }
+}
+
+/// Sides that two surfaces of one input polygon share: where it was cut.
+fn cuts(scene: &Scene) -> FxHashMap<(u32, u32, u32), u32> {
+    let mut uses = FxHashMap::default();
+    for surface in &scene.surfaces {
+        for side in sides(surface) {
+            *uses.entry(side).or_insert(0) += 1;
+        }
+    }
+    uses.retain(|_, count| *count > 1);
+    uses
+}
+
+fn sides(surface: &Surface) -> impl Iterator<Item = (u32, u32, u32)> {
+    let corners = surface.corners.indices();
+    (0..corners.len()).map(move |i| {
+        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+        (surface.polygon, a.min(b), a.max(b))
+    })
+}
+
+fn outline(surface: &Surface, cuts: &FxHashMap<(u32, u32, u32), u32>) -> [bool; 4] {
+    let mut outline = [true; 4];
+    for (slot, side) in outline.iter_mut().zip(sides(surface)) {
+        *slot = !cuts.contains_key(&side);
+    }
+    outline
+}
+
+/// The outline of the same polygon with its corners in reverse order.
+fn reversed(outline: [bool; 4], count: usize) -> [bool; 4] {
+    let mut back = [true; 4];
+    for (i, slot) in back.iter_mut().enumerate().take(count) {
+        *slot = outline[(2 * count - 2 - i) % count];
+    }
+    back
+}
+
+/// The middle of an element: the bilinear centre of a quad, the centroid of a triangle.
+pub(super) fn centre_of(corners: &[Lattice]) -> Lattice {
+    if let [a, b, c] = corners {
+        let third = |a: u32, b: u32, c: u32| ((u64::from(a) + u64::from(b) + u64::from(c)) / 3) as u32;
+        Lattice::new(third(a.u, b.u, c.u), third(a.v, b.v, c.v))
+    } else {
+        corners[0].midpoint(corners[2])
+    }
+}
+
+/// A grid whose cells are between 1 : √2 and √2 : 1, of powers of two.
+fn grid_of(patch: &Patch) -> (u32, u32) {
+    let &[a, b, c, d] = patch.corners() else { return (1, 1) };
+    let width = a.distance(b).max(c.distance(d));
+    let height = b.distance(c).max(d.distance(a));
+    let steps = (width / height).log2().round().clamp(-10.0, 10.0) as i32;
+    (1 << steps.max(0), 1 << (-steps).max(0))
+}

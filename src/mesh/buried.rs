@@ -1,0 +1,74 @@
+//! Vertices buried in a solid: they see nothing that radiates, and take no part in the light around them.
+//!
+//! Where a box stands on a floor, the floor beneath it stays dark. Interpolating towards those vertices would let that
+//! darkness leak out along the line of contact, and a shooting floor would lose the light of every cell that the box
+//! covers in part. So buried vertices are not evaluated; light is continued to them from the open vertices around, and
+//! they have no weight when it is integrated.
+
+use super::{Mesh, NONE};
+use crate::radiometry::Spectrum;
+
+/// How light is continued to the buried vertices of a mesh.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Continuation {
+    /// Buried vertices in the order of filling, each with its end in `sources`.
+    steps: Vec<(u32, u32)>,
+    /// The vertices whose mean each takes.
+    sources: Vec<u32>,
+}
+
+impl Mesh {
+    /// Continues values from open to buried vertices, nearest first, for vertices from `first` on.
+    pub fn continue_to_buried(&self, values: &mut [Spectrum], first: u32) {
+        let mut begin = 0;
+        for &(vertex, end) in &self.continuation.steps {
+            let sources = &self.continuation.sources[begin as usize..end as usize];
+            begin = end;
+            if vertex >= first {
+                let sum: Spectrum = sources.iter().map(|v| values[*v as usize]).sum();
+                values[vertex as usize] = sum / sources.len() as f32;
+            }
+        }
+    }
+
+    /// Plans the continuation: ring by ring from the open vertices, along the edges of the fans.
+    pub(super) fn plan_continuation(&mut self) {
+        self.continuation = Continuation::default();
+        if !self.buried.contains(&true) {
+            return;
+        }
+        let mut edges: Vec<(u32, u32)> = Vec::new();
+        for leaf in self.leaves() {
+            for [centre, a, b] in self.fan(leaf) {
+                for (from, to) in [(centre, a), (a, b), (b, centre)] {
+                    for (buried, other) in [(from, to), (to, from)] {
+                        if self.buried[buried as usize] {
+                            edges.push((buried, other));
+                        }
+                    }
+                }
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let mut ring: Vec<u32> = self.buried.iter().map(|buried| if *buried { NONE } else { 0 }).collect();
+        for current in 1.. {
+            let before = self.continuation.steps.len();
+            for group in edges.chunk_by(|a, b| a.0 == b.0) {
+                let vertex = group[0].0;
+                if ring[vertex as usize] == NONE {
+                    let known = group.iter().map(|(_, other)| *other).filter(|other| ring[*other as usize] < current);
+                    let count = self.continuation.sources.len();
+                    self.continuation.sources.extend(known);
+                    if self.continuation.sources.len() > count {
+                        ring[vertex as usize] = current;
+                        self.continuation.steps.push((vertex, self.continuation.sources.len() as u32));
+                    }
+                }
+            }
+            if self.continuation.steps.len() == before {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! A cell of the quadtree.
+
+/// No such vertex or element.
+pub const NONE: u32 = u32::MAX;
+
+/// A cell of the quadtree of a patch: the piece that receives and is interpolated over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Element {
+    /// The patch that it is a part of.
+    pub patch: u32,
+    /// Corner vertices in order; the last is [`NONE`] for a triangle.
+    pub corners: [u32; 4],
+    /// The vertex at its centre.
+    pub centre: u32,
+    /// For a leaf, the vertex in the middle of each side that a finer neighbour has there, or [`NONE`].
+    pub hanging: [u32; 4],
+    /// The first of its four children, or [`NONE`] for a leaf.
+    pub children: u32,
+    /// Its depth in the quadtree.
+    pub level: u8,
+}
+
+impl Element {
+    /// Whether it is not split.
+    pub fn is_leaf(&self) -> bool {
+        self.children == NONE
+    }
+
+    /// Its three or four corner vertices.
+    pub fn corners(&self) -> &[u32] {
+        if self.corners[3] == NONE { &self.corners[..3] } else { &self.corners }
+    }
+
+    /// Its sides: number, first vertex, second vertex.
+    pub fn sides(&self) -> impl Iterator<Item = (usize, u32, u32)> + '_ {
+        let corners = self.corners();
+        (0..corners.len()).map(move |i| (i, corners[i], corners[(i + 1) % corners.len()]))
+    }
+}

@@ -1,0 +1,101 @@
+//! The interpolant: linear on the triangles around the centre of each element.
+
+use super::{Lattice, Mesh, NONE, UNIT};
+use glam::DVec3;
+
+/// A corner of a fan triangle with its barycentric weight.
+pub type Weighted = (u32, f32);
+
+impl Mesh {
+    /// The triangles of a leaf's fan: its centre, then two vertices that follow one another on its boundary.
+    pub fn fan(&self, element: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
+        let of = self.elements[element as usize];
+        let count = of.corners().len();
+        (0..count).flat_map(move |side| {
+            let (a, b, middle) = (of.corners[side], of.corners[(side + 1) % count], of.hanging[side]);
+            let (first, second) = if middle == NONE { (b, None) } else { (middle, Some([of.centre, middle, b])) };
+            std::iter::once([of.centre, a, first]).chain(second)
+        })
+    }
+
+    /// The leaf that covers the point (u, v) of a patch, coordinates clamped to the patch.
+    pub fn leaf_at(&self, patch: u32, u: f64, v: f64) -> u32 {
+        let of = &self.patches[patch as usize];
+        let (columns, rows) = of.grid;
+        let cell = |x: f64, n: u32| ((x * f64::from(n)).max(0.0) as u32).min(n - 1);
+        let mut element = of.roots.start + cell(v, rows) * columns + cell(u, columns);
+        while !self.elements[element as usize].is_leaf() {
+            element = self.child_at(element, u, v);
+        }
+        element
+    }
+
+    /// The child of a split element that covers the point (u, v).
+    pub fn child_at(&self, element: u32, u: f64, v: f64) -> u32 {
+        let of = &self.elements[element as usize];
+        let lattice = |vertex: u32| self.vertices[vertex as usize].lattice;
+        let steps = |x: f64| x * f64::from(UNIT);
+        let (u, v) = (steps(u), steps(v));
+        let quarter = if of.corners().len() == 4 {
+            let middle = lattice(of.centre);
+            match (u >= f64::from(middle.u), v >= f64::from(middle.v)) {
+                (false, false) => 0,
+                (true, false) => 1,
+                (true, true) => 2,
+                (false, true) => 3,
+            }
+        } else {
+            // Barycentric coordinates in the element; sizes are signed in the middle children.
+            let (a, b, c) = (lattice(of.corners[0]), lattice(of.corners[1]), lattice(of.corners[2]));
+            let difference = |p: u32, q: u32| f64::from(p) - f64::from(q);
+            let (bu, bv) = (difference(b.u, a.u), difference(b.v, a.v));
+            let (cu, cv) = (difference(c.u, a.u), difference(c.v, a.v));
+            let (pu, pv) = (u - f64::from(a.u), v - f64::from(a.v));
+            let determinant = bu * cv - bv * cu;
+            let beta = (pu * cv - pv * cu) / determinant;
+            let gamma = (bu * pv - bv * pu) / determinant;
+            match (beta, gamma) {
+                (b, _) if b > 0.5 => 1,
+                (_, c) if c > 0.5 => 2,
+                (b, c) if b + c < 0.5 => 0,
+                _ => 3,
+            }
+        };
+        of.children + quarter
+    }
+
+    /// Longest extent of an element in (u, v), where the patch is 1.
+    pub fn unit_side(&self, element: u32) -> f64 {
+        let lattice = |v: u32| self.vertices[v as usize].lattice;
+        let step = |(_, a, b): (usize, u32, u32)| lattice(a).u.abs_diff(lattice(b).u).max(lattice(a).v.abs_diff(lattice(b).v));
+        f64::from(self.elements[element as usize].sides().map(step).max().unwrap_or(0)) / f64::from(UNIT)
+    }
+
+    /// The fan triangle of a leaf that covers a point of its plane, with barycentric weights; a point a hair outside
+    /// gets the nearest triangle's continuation, clamped to it.
+    pub fn interpolate(&self, leaf: u32, point: DVec3) -> [Weighted; 3] {
+        let normal = self.patches[self.elements[leaf as usize].patch as usize].normal;
+        let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
+        for triangle in self.fan(leaf) {
+            let [a, b, c] = triangle.map(|v| self.position(v));
+            let area = (b - a).cross(c - a).dot(normal);
+            let beta = (point - a).cross(c - a).dot(normal) / area;
+            let gamma = (b - a).cross(point - a).dot(normal) / area;
+            let alpha = 1.0 - beta - gamma;
+            let inside = alpha.min(beta).min(gamma);
+            if inside > best.1 {
+                let clamped = [alpha, beta, gamma].map(|w| w.max(0.0));
+                let sum: f64 = clamped.iter().sum();
+                let weight = |i: usize| (triangle[i], (clamped[i] / sum) as f32);
+                best = ([weight(0), weight(1), weight(2)], inside);
+            }
+        }
+        best.0
+    }
+
+    /// The leaf and weights at a lattice point of a patch.
+    pub fn interpolate_at(&self, patch: u32, lattice: Lattice) -> [Weighted; 3] {
+        let (u, v) = lattice.unit();
+        self.interpolate(self.leaf_at(patch, u, v), self.patches[patch as usize].position(lattice))
+    }
+}

@@ -1,0 +1,87 @@
+//! Patches, the quadtree of elements on each, and the vertices that elements share.
+//!
+//! A [`Patch`] is one radiating side of a surface. Its elements form a quadtree, kept balanced: neighbours differ by one
+//! level. Every element has a vertex at each corner and one at its centre, so light is known at 2n + 1 … points without
+//! asking, and the interpolant is linear on the *fan* of triangles around the centre, hanging corners of finer neighbours
+//! included. That fan is the solution: it is what shoots, what is integrated, probed and exported.
+//! Imports `geometry`, `radiometry` and `scene`.
+
+mod build;
+mod buried;
+mod element;
+mod fan;
+mod lattice;
+mod patch;
+mod refine;
+mod restore;
+
+pub use build::MeshLimits;
+pub use element::{Element, NONE};
+pub use lattice::{Lattice, UNIT};
+pub use patch::Patch;
+
+use crate::geometry::Frame;
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
+
+/// A vertex: a corner or the centre of elements of one patch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Vertex {
+    /// The patch that it belongs to.
+    pub patch: u32,
+    /// Where it is on its patch.
+    pub lattice: Lattice,
+    /// Where light is evaluated, in the frame: the position, moved a hair inwards on the border of the patch.
+    pub point: DVec3,
+}
+
+/// The adaptive mesh of a scene, without the light on it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Mesh {
+    /// From scene to mesh coordinates.
+    pub frame: Frame,
+    /// The radiating sides, in the order of the scene's surfaces.
+    pub patches: Vec<Patch>,
+    /// All elements, parents included; children follow one another.
+    pub elements: Vec<Element>,
+    /// All vertices, in the order of their making.
+    pub vertices: Vec<Vertex>,
+    /// Vertices inside a solid; see [`Mesh::continue_to_buried`].
+    pub buried: Vec<bool>,
+    /// The area that the interpolant gives to each vertex, 0 if it is buried: the integral of an interpolated quantity
+    /// over what is open is Σ weight · value.
+    #[serde(skip)]
+    pub weights: Vec<f64>,
+    /// The same with the buried part.
+    #[serde(skip)]
+    pub full_weights: Vec<f64>,
+    #[serde(skip)]
+    continuation: buried::Continuation,
+    #[serde(skip)]
+    at: FxHashMap<(u32, Lattice), u32>,
+    limits: MeshLimits,
+}
+
+impl Mesh {
+    /// The leaves: elements that are not split.
+    pub fn leaves(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.elements.len() as u32).filter(|e| self.elements[*e as usize].is_leaf())
+    }
+
+    /// The vertex of a patch at a lattice point, if there is one.
+    pub fn vertex_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
+        self.at.get(&(patch, lattice)).copied()
+    }
+
+    /// Position of a vertex in the frame.
+    pub fn position(&self, vertex: u32) -> DVec3 {
+        let vertex = &self.vertices[vertex as usize];
+        self.patches[vertex.patch as usize].position(vertex.lattice)
+    }
+
+    /// The deepest level of any element.
+    pub fn depth(&self) -> u32 {
+        self.elements.iter().map(|e| u32::from(e.level)).max().unwrap_or(0)
+    }
+}

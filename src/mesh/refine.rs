@@ -1,0 +1,122 @@
+//! Splitting elements, keeping the quadtree balanced, and the topology that follows.
+
+use super::build::centre_of;
+use super::{Element, Lattice, Mesh, NONE, Vertex};
+use glam::DVec3;
+
+/// A vertex on the border of its patch is evaluated this fraction of the way to the centre of the element that made it.
+const INWARDS: f64 = 1e-3;
+
+impl Mesh {
+    /// Length of the longest side of an element, in frame units.
+    pub fn longest_side(&self, element: u32) -> f64 {
+        let sides = self.elements[element as usize].sides();
+        sides.map(|(_, a, b)| self.position(a).distance(self.position(b))).fold(0.0, f64::max)
+    }
+
+    /// Whether the limits allow an element to be split.
+    pub fn may_split(&self, element: u32) -> bool {
+        let level = u32::from(self.elements[element as usize].level);
+        // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
+        level < self.limits.max_depth.min(17) && self.longest_side(element) > self.limits.min_size * self.frame.extent()
+    }
+
+    /// Splits a leaf into four; returns the first child.
+    pub fn split(&mut self, element: u32) -> u32 {
+        let parent = self.elements[element as usize];
+        debug_assert!(parent.is_leaf());
+        let first = self.elements.len() as u32;
+        let at = |mesh: &Self, v: u32| mesh.vertices[v as usize].lattice;
+        let [a, b, c] = [0, 1, 2].map(|i| at(self, parent.corners[i]));
+        let mut children: [[Lattice; 4]; 4];
+        let count = parent.corners().len();
+        if count == 3 {
+            let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
+            children = [[a, ab, ca, a], [ab, b, bc, a], [ca, bc, c, a], [bc, ca, ab, a]];
+        } else {
+            let d = at(self, parent.corners[3]);
+            let m = at(self, parent.centre);
+            let (ab, bc, cd, da) = (a.midpoint(b), b.midpoint(c), c.midpoint(d), d.midpoint(a));
+            children = [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]];
+        }
+        for corners in &mut children {
+            let corners = &corners[..count];
+            let centre = centre_of(corners);
+            let centre_position = self.patches[parent.patch as usize].position(centre);
+            let mut child = Element { corners: [NONE; 4], level: parent.level + 1, hanging: [NONE; 4], ..parent };
+            for (slot, corner) in child.corners.iter_mut().zip(corners) {
+                *slot = self.vertex(parent.patch, *corner, centre_position);
+            }
+            child.centre = self.vertex(parent.patch, centre, centre_position);
+            self.elements.push(child);
+        }
+        self.elements[element as usize].children = first;
+        first
+    }
+
+    /// The vertex at a lattice point, made if there is none; `inside` is the centre of the element that asks.
+    pub(super) fn vertex(&mut self, patch: u32, lattice: Lattice, inside: DVec3) -> u32 {
+        if let Some(vertex) = self.vertex_at(patch, lattice) {
+            return vertex;
+        }
+        let owner = &mut self.patches[patch as usize];
+        let position = owner.position(lattice);
+        let point = if owner.on_border(lattice) { position.lerp(inside, INWARDS) } else { position };
+        let vertex = self.vertices.len() as u32;
+        owner.vertices.push(vertex);
+        self.vertices.push(Vertex { patch, lattice, point });
+        self.at.insert((patch, lattice), vertex);
+        vertex
+    }
+
+    /// The leaves among `candidates` and all others that must be split so that neighbours differ by at most one level: those
+    /// with a vertex at a quarter of a side.
+    pub fn unbalanced(&self) -> Vec<u32> {
+        self.leaves().filter(|e| self.has_quarter_vertex(&self.elements[*e as usize])).collect()
+    }
+
+    fn has_quarter_vertex(&self, element: &Element) -> bool {
+        element.sides().any(|(_, a, b)| {
+            let (a, b) = (self.vertices[a as usize].lattice, self.vertices[b as usize].lattice);
+            let middle = a.midpoint(b);
+            self.vertex_at(element.patch, middle).is_some()
+                && [a, b].iter().any(|end| self.vertex_at(element.patch, end.midpoint(middle)).is_some())
+        })
+    }
+
+    /// Finds hanging vertices and integration weights; to be called after splits, before light is integrated.
+    pub fn finish_topology(&mut self) {
+        for element in 0..self.elements.len() {
+            let of = self.elements[element];
+            if of.is_leaf() {
+                let mut hanging = [NONE; 4];
+                for (side, a, b) in of.sides() {
+                    let middle = self.vertices[a as usize].lattice.midpoint(self.vertices[b as usize].lattice);
+                    hanging[side] = self.vertex_at(of.patch, middle).unwrap_or(NONE);
+                }
+                self.elements[element].hanging = hanging;
+            }
+        }
+        self.full_weights.clear();
+        self.full_weights.resize(self.vertices.len(), 0.0);
+        for element in 0..self.elements.len() as u32 {
+            if self.elements[element as usize].is_leaf() {
+                for triangle in self.fan(element) {
+                    let [a, b, c] = triangle.map(|v| self.position(v));
+                    let third = (b - a).cross(c - a).length() / 6.0;
+                    triangle.iter().for_each(|v| self.full_weights[*v as usize] += third);
+                }
+            }
+        }
+        self.mark_buried(self.vertices.len() as u32, &[]);
+    }
+
+    /// Says which vertices from `first` on are buried; vertices not spoken of are open.
+    pub fn mark_buried(&mut self, first: u32, buried: &[bool]) {
+        self.buried.truncate(first as usize);
+        self.buried.extend_from_slice(buried);
+        self.buried.resize(self.vertices.len(), false);
+        self.weights = self.full_weights.iter().zip(&self.buried).map(|(w, buried)| if *buried { 0.0 } else { *w }).collect();
+        self.plan_continuation();
+    }
+}

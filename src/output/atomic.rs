@@ -1,0 +1,104 @@
+//! Files that appear whole or not at all.
+
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A file could not be written; nothing was left behind, and a file of that name from before is untouched.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {reason}", path.display())]
+pub struct WriteError {
+    /// The file that was asked for.
+    pub path: PathBuf,
+    /// What went wrong.
+    pub reason: io::Error,
+}
+
+/// Writes `path` through `fill`: into a temporary file of the same folder first, which takes the real name only when
+/// all of it has reached the disk. A reader never sees half a file, and an interrupted run keeps the previous one.
+///
+/// # Errors
+/// When the folder cannot be written to, the disk is full, `path` is a folder, or `fill` fails.
+pub fn write_atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), WriteError> {
+    fill_and_rename(path, fill).map_err(|reason| WriteError {
+        path: path.to_path_buf(),
+        reason,
+    })
+}
+
+fn fill_and_rename(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let (draft, file) = Draft::create(path)?;
+    let mut writer = BufWriter::new(file);
+    fill(&mut writer)?;
+    writer.flush()?;
+    writer.get_ref().sync_all()?;
+    drop(writer);
+    draft.publish(path)
+}
+
+/// The temporary file; removed when dropped unless it was published.
+struct Draft {
+    path: Option<PathBuf>,
+}
+
+impl Draft {
+    /// Creates it beside `path`, under a name that nobody else uses: `.name.process.number.part`.
+    fn create(path: &Path) -> io::Result<(Self, File)> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let name = path
+            .file_name()
+            .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
+        loop {
+            let mut temporary = OsString::from(".");
+            temporary.push(name);
+            temporary.push(format!(
+                ".{}.{}.part",
+                process::id(),
+                NUMBER.fetch_add(1, Ordering::Relaxed)
+            ));
+            let temporary = path.with_file_name(temporary);
+            match OpenOptions::new()
+                .write(true)
+                .create_new(true)
+                .open(&temporary)
+            {
+                Ok(file) => {
+                    return Ok((
+                        Self {
+                            path: Some(temporary),
+                        },
+                        file,
+                    ));
+                }
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    fn publish(mut self, path: &Path) -> io::Result<()> {
+        if let Some(temporary) = &self.path {
+            fs::rename(temporary, path)?;
+        }
+        self.path = None;
+        Ok(())
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.path {
+            // Already failing: the first error is the one to report.
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}

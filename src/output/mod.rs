@@ -1,0 +1,27 @@
+//! Results as files, one writer a format, and the summary table as text.
+//!
+//! Every file appears whole or not at all ([`write_atomically`]), and every failure names the file and the reason
+//! ([`WriteError`]). Imports `solution` only: pictures come in as plain rows of pixels.
+
+mod atomic;
+mod exr;
+mod ply;
+mod png;
+mod table;
+
+pub use atomic::{WriteError, write_atomically};
+pub use exr::write_exr;
+pub use ply::write_ply;
+pub use png::write_png;
+pub use table::{SummaryRow, summary_table};
+
+use std::io;
+
+/// Checks that a picture has at least one pixel and as many as its size says.
+fn check_picture(width: u32, height: u32, pixels: usize) -> io::Result<()> {
+    if pixels == 0 || pixels as u64 != u64::from(width) * u64::from(height) {
+        let reason = format!("a picture of {width} x {height} cannot have {pixels} pixels");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    }
+    Ok(())
+}

@@ -1,0 +1,92 @@
+//! From a scene to its solution in one call: mesh, visibility, solve, report.
+
+use crate::mesh::Mesh;
+use crate::scene::Scene;
+use crate::solution::{EngineReport, PowerReport, Report, Seconds, Solution};
+use crate::solver::{Observer, Options, Solver, occluders};
+use crate::visibility::{EngineChoice, VisibilityError, build};
+use std::time::Instant;
+use thiserror::Error;
+
+/// How a scene is solved.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    /// Thresholds and limits.
+    pub options: Options,
+    /// Who traces the rays.
+    pub engine: EngineChoice,
+    /// Threads; 0 for as many as the machine has.
+    pub threads: usize,
+}
+
+/// Why a scene could not be solved.
+#[derive(Debug, Error)]
+pub enum SolveError {
+    /// The visibility engine could not be built.
+    #[error(transparent)]
+    Visibility(#[from] VisibilityError),
+    /// The threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// The system's reason.
+        reason: String,
+    },
+}
+
+/// Solves `scene`; `observer` hears of the progress and may stop it. The same settings on the same instruction set give the same
+/// solution, bit for bit, for any number of threads.
+pub fn solve(scene: &Scene, settings: &Settings, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    let started = Instant::now();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.threads)
+        .build()
+        .map_err(|e| SolveError::Threads { threads: settings.threads, reason: e.to_string() })?;
+    let threads = pool.current_num_threads();
+    let mesh = Mesh::new(scene, settings.options.limits);
+    let visibility = build(settings.engine, &occluders(scene, &mesh), threads)?;
+    let solver = pool.install(|| Solver::new(scene, mesh, visibility.as_ref(), settings.options.clone()));
+    let built = Instant::now();
+    let outcome = pool.install(|| solver.run(observer));
+    let engine = visibility.info();
+    let mesh = outcome.mesh;
+    let report = Report {
+        scene: scene.name.clone(),
+        engine: EngineReport {
+            name: engine.name.to_owned(),
+            version: engine.version,
+            isa: engine.isa,
+            packet_width: engine.packet_width,
+        },
+        threads,
+        input_patches: scene.input_polygons,
+        patches: mesh.patches.len(),
+        shots: outcome.shots,
+        meshing_shots: outcome.meshing_shots,
+        max_depth: mesh.depth(),
+        elements: mesh.leaves().count(),
+        vertices: mesh.vertices.len(),
+        buried_vertices: mesh.buried.iter().filter(|b| **b).count(),
+        rays: outcome.rays,
+        seconds: Seconds {
+            load: 0.0,
+            build: (built - started).as_secs_f64(),
+            solve: built.elapsed().as_secs_f64(),
+            write: 0.0,
+        },
+        stop_reason: outcome.stop_reason,
+        reference_irradiance: outcome.reference_irradiance,
+        power: PowerReport::new(&outcome.ledger, |p| p.element_sum()),
+        power_rgb: PowerReport::new(&outcome.ledger, |p| p.to_array()),
+        options: settings.options.clone(),
+        warnings: scene.warnings.clone(),
+    };
+    Ok(Solution {
+        report,
+        cameras: scene.cameras.clone(),
+        metres_per_unit: scene.metres_per_unit,
+        mesh,
+        light: outcome.light,
+    })
+}

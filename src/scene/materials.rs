@@ -1,0 +1,188 @@
+//! From what the files say about materials to the scene's own: overrides applied, values judged.
+
+use super::mtl::{Entry, Library, Stated};
+use super::settings::{Channels, MaterialSettings, Settings, SidesRule};
+use super::text::{TextFile, quote};
+use super::{Material, SceneError};
+use crate::radiometry::Spectrum;
+use glam::DVec3;
+use std::path::Path;
+use toml::Spanned;
+
+/// What a material reflects where no file says it.
+const DEFAULT_REFLECTANCE: f32 = 0.5;
+
+/// The scene's materials, with the rule for the sides of their surfaces; both indexed as the library's.
+pub(super) struct Materials {
+    pub list: Vec<Material>,
+    pub sides: Vec<SidesRule>,
+}
+
+/// Judges every material of the library, as overridden by the settings (and the file they stand in).
+pub(super) fn decide(
+    library: &Library,
+    settings: Option<(&TextFile, &Settings)>,
+) -> Result<Materials, SceneError> {
+    if let Some((file, settings)) = settings {
+        refuse_unknown_names(file, settings, library)?;
+    }
+    let scene_rule = settings
+        .and_then(|(_, s)| s.sides)
+        .unwrap_or(SidesRule::Auto);
+    let mut materials = Materials {
+        list: Vec::new(),
+        sides: Vec::new(),
+    };
+    for entry in &library.entries {
+        let over =
+            settings.and_then(|(file, s)| Some((file, s.material.get(&entry.name)?.get_ref())));
+        let rule = over.and_then(|(_, material)| material.sides);
+        materials.list.push(material(entry, over)?);
+        materials.sides.push(rule.unwrap_or(scene_rule));
+    }
+    Ok(materials)
+}
+
+/// One material, as its MTL file and then the settings have it.
+fn material(
+    entry: &Entry,
+    over: Option<(&TextFile, &MaterialSettings)>,
+) -> Result<Material, SceneError> {
+    let name = entry.name.clone();
+    let mut reflectance = Spectrum::splat(DEFAULT_REFLECTANCE);
+    if let Some(stated) = stated(&entry.reflectance, over, |m| m.reflectance.as_ref()) {
+        // Judged as stored: a reflectance just below 1 must not become 1 by rounding.
+        reflectance = stated.channels.as_vec3();
+        if !reflectance
+            .to_array()
+            .iter()
+            .all(|c| (0.0..1.0).contains(c))
+        {
+            let expected = "0 <= reflectance < 1 in each channel";
+            return Err(stated.refused("reflectance", &name, expected));
+        }
+    }
+    let mut emitted_radiance = Spectrum::ZERO;
+    if let Some(stated) = stated(&entry.emitted_radiance, over, |m| {
+        m.emitted_radiance.as_ref()
+    }) {
+        emitted_radiance = stated.channels.as_vec3();
+        if !emitted_radiance
+            .to_array()
+            .iter()
+            .all(|c| *c >= 0.0 && c.is_finite())
+        {
+            let expected = "a finite radiance >= 0 in each channel";
+            return Err(stated.refused("emitted radiance", &name, expected));
+        }
+    }
+    Ok(Material {
+        name,
+        reflectance,
+        emitted_radiance,
+    })
+}
+
+impl Stated {
+    fn refused(&self, quantity: &str, material: &str, expected: &str) -> SceneError {
+        let DVec3 { x, y, z } = self.channels;
+        let found = format!("the {quantity} ({x}, {y}, {z}) of {}", quote(material));
+        SceneError::new(&self.file, self.line, found, expected)
+    }
+}
+
+/// Warns of materials that had to be made up, wholly or in part.
+pub(super) fn warn_of_defaults(
+    file: &Path,
+    library: &Library,
+    settings: Option<&Settings>,
+    warnings: &mut Vec<String>,
+) {
+    let overridden = |entry: &Entry| {
+        settings
+            .and_then(|s| s.material.get(&entry.name))
+            .is_some_and(|m| m.get_ref().reflectance.is_some())
+    };
+    let grey: Vec<&Entry> = library
+        .entries
+        .iter()
+        .filter(|e| e.reflectance.is_none() && !overridden(e))
+        .collect();
+    for entry in grey.iter().filter(|entry| !entry.defined) {
+        let what = match Some(&entry.name) == library.default_name() {
+            true => format!("without a material, given a grey of {DEFAULT_REFLECTANCE}"),
+            false => {
+                format!(
+                    "of material {}, which no .mtl file defines, given a grey of {DEFAULT_REFLECTANCE}",
+                    quote(&entry.name)
+                )
+            }
+        };
+        entry.polygons.report(warnings, file, "polygon", &what);
+    }
+    let names: Vec<String> = grey
+        .iter()
+        .filter(|e| e.defined)
+        .map(|e| quote(&e.name))
+        .collect();
+    if !names.is_empty() {
+        let (count, plural) = (names.len(), if names.len() == 1 { "" } else { "s" });
+        let list = shortened(&names);
+        let file = file.display();
+        warnings.push(format!("{file}: {count} material{plural} without `Kd` given a grey of {DEFAULT_REFLECTANCE}: {list}"));
+    }
+}
+
+/// What the settings state, or else what the MTL file does.
+fn stated(
+    own: &Option<Stated>,
+    over: Option<(&TextFile, &MaterialSettings)>,
+    pick: impl Fn(&MaterialSettings) -> Option<&Spanned<Channels>>,
+) -> Option<Stated> {
+    let overriding = over.and_then(|(file, settings)| {
+        let channels = pick(settings)?;
+        Some(Stated {
+            channels: DVec3::from_array(channels.get_ref().0),
+            file: file.path.clone(),
+            line: file.line_at(channels.span().start),
+        })
+    });
+    overriding.or_else(|| own.clone())
+}
+
+fn refuse_unknown_names(
+    file: &TextFile,
+    settings: &Settings,
+    library: &Library,
+) -> Result<(), SceneError> {
+    let known = |name: &String| library.entries.iter().any(|entry| entry.name == *name);
+    match settings.material.iter().find(|(name, _)| !known(name)) {
+        None => Ok(()),
+        Some((name, table)) => {
+            let names: Vec<String> = library
+                .entries
+                .iter()
+                .map(|entry| quote(&entry.name))
+                .collect();
+            let expected = match names.is_empty() {
+                true => "no materials, as the geometry has none".to_owned(),
+                false => format!("a material of the geometry: {}", shortened(&names)),
+            };
+            Err(file.error(
+                file.line_at(table.span().start),
+                format!("the material {}", quote(name)),
+                expected,
+            ))
+        }
+    }
+}
+
+/// The first few names of a list.
+fn shortened(names: &[String]) -> String {
+    const SHOWN: usize = 8;
+    let shown = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}

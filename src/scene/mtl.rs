@@ -1,0 +1,297 @@
+//! Materials from the MTL files that an OBJ file names.
+//!
+//! As with polygons, a scan of our own checks the lines that matter and hands `tobj` the same materials in
+//! their plainest form.
+
+use super::SceneError;
+use super::obj_guard::{CheckedObj, UsedMaterial, rest_of};
+use super::text::{TextFile, quote};
+use super::warnings::Tally;
+use glam::DVec3;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// The materials of a scene's MTL files, then those that only the OBJ file names.
+#[derive(Default)]
+pub(super) struct Library {
+    /// In order of definition; no two with the same name.
+    pub entries: Vec<Entry>,
+    /// The material of polygons that name none, if there are any such.
+    pub default: Option<usize>,
+    tobj: Vec<tobj::Material>,
+}
+
+/// A material as its file has it.
+pub(super) struct Entry {
+    /// Its name.
+    pub name: String,
+    /// `Kd`, if the file has it.
+    pub reflectance: Option<Stated>,
+    /// `Ke`, if the file has it.
+    pub emitted_radiance: Option<Stated>,
+    /// The polygons that use it.
+    pub polygons: Tally,
+    /// Whether any MTL file defines it.
+    pub defined: bool,
+}
+
+/// Three numbers, not yet judged, and where they stand.
+#[derive(Debug, Clone)]
+pub(super) struct Stated {
+    pub channels: DVec3,
+    pub file: PathBuf,
+    pub line: usize,
+}
+
+/// The name under which polygons without a material find one, and can be given one in a `scene.toml`.
+const DEFAULT_NAME: &str = "default";
+
+impl Library {
+    /// The name of the material of polygons that name none.
+    pub fn default_name(&self) -> Option<&String> {
+        self.default.map(|index| &self.entries[index].name)
+    }
+
+    /// What `tobj` wants to know of materials when it reads polygons.
+    pub fn for_tobj(&self) -> tobj::MTLLoadResult {
+        let indices = self
+            .tobj
+            .iter()
+            .enumerate()
+            .map(|(i, m)| (m.name.clone(), i))
+            .collect();
+        Ok((self.tobj.clone(), indices))
+    }
+}
+
+/// Reads every library that `obj` names, and adds the materials that it uses without a definition.
+pub(super) fn read(
+    file: &TextFile,
+    obj: &CheckedObj,
+    warnings: &mut Vec<String>,
+) -> Result<Library, SceneError> {
+    let mut scan = Scan::default();
+    let mut seen = Vec::new();
+    for (line, named) in &obj.libraries {
+        for path in library_paths(file, *line, named)? {
+            if !seen.contains(&path) {
+                scan.file(&TextFile::read(&path, "an .mtl file")?, warnings)?;
+                seen.push(path);
+            }
+        }
+    }
+    for UsedMaterial { name, polygons } in &obj.used_materials {
+        let index = scan
+            .index_of(name)
+            .unwrap_or_else(|| scan.define(name, false));
+        scan.entries[index].polygons = *polygons;
+    }
+    let mut default = None;
+    if obj.without_material.count > 0 {
+        let index = scan
+            .index_of(DEFAULT_NAME)
+            .unwrap_or_else(|| scan.define(DEFAULT_NAME, false));
+        scan.entries[index].polygons = obj.without_material;
+        default = Some(index);
+    }
+    let (entries, tobj) = scan.finish(file)?;
+    Ok(Library {
+        entries,
+        default,
+        tobj,
+    })
+}
+
+/// The files that a `mtllib` means: one whose name may hold spaces, or several.
+fn library_paths(file: &TextFile, line: usize, named: &str) -> Result<Vec<PathBuf>, SceneError> {
+    let folder = file.path.parent().unwrap_or(Path::new(""));
+    let find = |name: &str| {
+        let here = [folder.join(name), folder.join(name.replace('\\', "/"))];
+        here.into_iter().find(|path| path.is_file())
+    };
+    if let Some(path) = find(named) {
+        return Ok(vec![path]);
+    }
+    let missing = |name: &str| {
+        let expected = format!("an .mtl file of that name in {}", folder_name(folder));
+        file.error(
+            line,
+            format!("`mtllib {name}`, a file that does not exist"),
+            expected,
+        )
+    };
+    match named
+        .split_whitespace()
+        .map(|name| find(name).ok_or_else(|| missing(name)))
+        .collect()
+    {
+        Ok(paths) => Ok(paths),
+        // Of a single name with spaces the whole is missing, not its first word.
+        Err(_) if !named.split_whitespace().any(|name| find(name).is_some()) => Err(missing(named)),
+        Err(error) => Err(error),
+    }
+}
+
+fn folder_name(folder: &Path) -> String {
+    match folder.as_os_str().is_empty() {
+        true => "the current folder".to_owned(),
+        false => folder.display().to_string(),
+    }
+}
+
+/// The state of the scan: what is defined, and the plain text for `tobj`.
+#[derive(Default)]
+struct Scan {
+    entries: Vec<Entry>,
+    text: String,
+}
+
+impl Scan {
+    fn index_of(&self, name: &str) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.name == name)
+    }
+
+    fn define(&mut self, name: &str, defined: bool) -> usize {
+        let entry = Entry {
+            name: name.to_owned(),
+            reflectance: None,
+            emitted_radiance: None,
+            polygons: Tally::default(),
+            defined,
+        };
+        self.entries.push(entry);
+        let _ = writeln!(self.text, "newmtl {name}");
+        self.entries.len() - 1
+    }
+
+    fn file(&mut self, file: &TextFile, warnings: &mut Vec<String>) -> Result<(), SceneError> {
+        let mut current = Current::None;
+        let (mut repeated, mut textures, mut transparent) =
+            (Tally::default(), Tally::default(), Tally::default());
+        for (line, text) in file.lines() {
+            let mut words = text
+                .split_ascii_whitespace()
+                .take_while(|word| !word.starts_with('#'));
+            let Some(keyword) = words.next() else {
+                continue;
+            };
+            match keyword {
+                "newmtl" => match rest_of(&text, keyword) {
+                    "" => {
+                        return Err(file.error(
+                            line,
+                            "`newmtl` without a name",
+                            "the name of a material",
+                        ));
+                    }
+                    name if self.index_of(name).is_some() => {
+                        repeated.add(line);
+                        current = Current::Skipped;
+                    }
+                    name => current = Current::Entry(self.define(name, true)),
+                },
+                "Kd" | "Ke" => {
+                    let channels = channels(words).map_err(|found| {
+                        file.error(
+                            line,
+                            format!("`{keyword}` with {found}"),
+                            format!("`{keyword} r g b`"),
+                        )
+                    })?;
+                    let stated = Stated {
+                        channels,
+                        file: file.path.clone(),
+                        line,
+                    };
+                    self.state(current, keyword, stated)
+                        .map_err(|found| file.error(line, found, "`newmtl NAME` first"))?;
+                }
+                "d" => match words.next().map(str::parse::<f64>) {
+                    Some(Ok(opacity)) if opacity < 1.0 => transparent.add(line),
+                    _ => {}
+                },
+                _ if keyword.starts_with("map_K") || keyword == "map_d" => textures.add(line),
+                _ => {}
+            }
+        }
+        repeated.report(
+            warnings,
+            &file.path,
+            "material",
+            "defined again: the first definition holds",
+        );
+        textures.report(
+            warnings,
+            &file.path,
+            "texture",
+            "ignored: a material has one colour",
+        );
+        transparent.report(
+            warnings,
+            &file.path,
+            "transparent material",
+            "treated as opaque",
+        );
+        Ok(())
+    }
+
+    fn state(&mut self, current: Current, keyword: &str, stated: Stated) -> Result<(), String> {
+        let index = match current {
+            Current::None => return Err(format!("`{keyword}` before any material")),
+            Current::Skipped => return Ok(()),
+            Current::Entry(index) => index,
+        };
+        let DVec3 { x, y, z } = stated.channels;
+        let _ = writeln!(self.text, "{keyword} {x} {y} {z}");
+        let entry = &mut self.entries[index];
+        *if keyword == "Kd" {
+            &mut entry.reflectance
+        } else {
+            &mut entry.emitted_radiance
+        } = Some(stated);
+        Ok(())
+    }
+
+    /// Lets `tobj` read the plain text; its values are the ones that count.
+    fn finish(mut self, file: &TextFile) -> Result<(Vec<Entry>, Vec<tobj::Material>), SceneError> {
+        let (tobj, _) = tobj::load_mtl_buf(&mut self.text.as_bytes()).map_err(|error| {
+            file.error(
+                None,
+                format!("materials that cannot be read ({error})"),
+                "MTL files",
+            )
+        })?;
+        for (entry, read) in self.entries.iter_mut().zip(&tobj) {
+            for (stated, value) in [
+                (&mut entry.reflectance, read.diffuse),
+                (&mut entry.emitted_radiance, read.emissive),
+            ] {
+                if let (Some(stated), Some(value)) = (stated, value) {
+                    stated.channels = DVec3::from_array(value);
+                }
+            }
+        }
+        Ok((self.entries, tobj))
+    }
+}
+
+/// The material that a line of an MTL file describes.
+#[derive(Clone, Copy)]
+enum Current {
+    None,
+    Skipped,
+    Entry(usize),
+}
+
+/// Three numbers, or one that stands for three.
+fn channels<'a>(words: impl Iterator<Item = &'a str>) -> Result<DVec3, String> {
+    let mut values = Vec::new();
+    for word in words {
+        values.push(word.parse::<f64>().map_err(|_| quote(word))?);
+    }
+    match values[..] {
+        [grey] => Ok(DVec3::splat(grey)),
+        [r, g, b] => Ok(DVec3::new(r, g, b)),
+        _ => Err(format!("{} numbers", values.len())),
+    }
+}

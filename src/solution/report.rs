@@ -1,0 +1,102 @@
+//! What a solve says of itself: `report.json`.
+
+use crate::radiometry::Power;
+use crate::solver::{Ledger, Options, StopReason};
+use serde::{Deserialize, Serialize};
+
+/// The facts of a solve; serialised as `report.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Name of the scene.
+    pub scene: String,
+    /// Who traced the rays.
+    pub engine: EngineReport,
+    /// Threads used.
+    pub threads: usize,
+    /// Polygons as read, before any splitting, initial subdivision or second side.
+    pub input_patches: usize,
+    /// Patches: radiating sides of the surfaces after splitting.
+    pub patches: usize,
+    /// Shots in all.
+    pub shots: u64,
+    /// Shots after which the mesh was tested: the paper's early iterations.
+    pub meshing_shots: u64,
+    /// Deepest level of a quadtree.
+    pub max_depth: u32,
+    /// Leaves of the quadtrees.
+    pub elements: usize,
+    /// Their corners and centres.
+    pub vertices: usize,
+    /// Vertices found inside a solid.
+    pub buried_vertices: usize,
+    /// Occlusion rays.
+    pub rays: u64,
+    /// Wall-clock time.
+    pub seconds: Seconds,
+    /// Why the solve ended.
+    pub stop_reason: StopReason,
+    /// The irradiance that relative thresholds are multiples of, W/m².
+    pub reference_irradiance: f64,
+    /// Power in W, channels summed.
+    pub power: PowerReport<f64>,
+    /// Power in W, by channel.
+    pub power_rgb: PowerReport<[f64; 3]>,
+    /// Every option in force.
+    pub options: Options,
+    /// What was suspicious in the input.
+    pub warnings: Vec<String>,
+}
+
+/// Who traced the rays.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EngineReport {
+    /// `embree` or `obvhs` (or `brute_force`).
+    pub name: String,
+    /// Version of the library.
+    pub version: String,
+    /// Instruction set.
+    pub isa: String,
+    /// Rays traced together.
+    pub packet_width: u32,
+}
+
+/// Wall-clock seconds of each part.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Seconds {
+    /// Reading the scene.
+    pub load: f64,
+    /// Building mesh and visibility engine.
+    pub build: f64,
+    /// Shooting and refining.
+    pub solve: f64,
+    /// Writing results; in a stored solution, what was written before it.
+    pub write: f64,
+}
+
+/// Where the power went: emitted = absorbed + escaped + unshot + residual.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PowerReport<T> {
+    /// Given by all emitters.
+    pub emitted: T,
+    /// Kept by the surfaces.
+    pub absorbed: T,
+    /// Gone to the open or onto sides that do not radiate, measured by rays of its own.
+    pub escaped: T,
+    /// Not yet shot.
+    pub unshot: T,
+    /// What the other terms leave over: discretisation, and the sampling of `escaped`.
+    pub residual: T,
+}
+
+impl<T> PowerReport<T> {
+    /// The ledger, each entry made by `of`.
+    pub fn new(ledger: &Ledger, of: impl Fn(Power) -> T) -> Self {
+        Self {
+            emitted: of(ledger.emitted),
+            absorbed: of(ledger.absorbed),
+            escaped: of(ledger.escaped),
+            unshot: of(ledger.unshot),
+            residual: of(ledger.residual()),
+        }
+    }
+}

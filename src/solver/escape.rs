@@ -1,0 +1,100 @@
+//! What leaves the scene: cosine-distributed rays from the shooter that meet nothing, or a side that does not radiate.
+
+use crate::form_factor::Source;
+use crate::geometry::{jitter, lift};
+use crate::radiometry::{Power, Spectrum};
+use crate::scene::Sides;
+use crate::visibility::{Hit, Ray, Visibility};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// What stands behind a triangle of the visibility scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Backing {
+    /// Unit normal of the front.
+    pub normal: DVec3,
+    /// The sides that radiate.
+    pub sides: Sides,
+}
+
+/// Whether a ray has ended on a side that does not radiate.
+pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &[Backing]) -> bool {
+    let Backing { normal, sides } = backing[hit.triangle as usize];
+    sides == Sides::Front && normal.dot(ray.direction.as_dvec3()) > 0.0
+}
+
+/// The part of a shot's power that escapes, in W times the square of the frame's scale, estimated with `count` rays.
+/// Points that `is_open` denies give nothing: what is buried has received nothing either.
+pub(super) fn escaped(
+    source: &Source,
+    visibility: &dyn Visibility,
+    backing: &[Backing],
+    is_open: impl Fn(DVec3) -> bool,
+    extent: f64,
+    (count, seed): (usize, u32),
+) -> Power {
+    let draws: Vec<Draw> = draw(source, count, seed).into_iter().filter(|draw| is_open(draw.point)).collect();
+    draws
+        .par_chunks(1024)
+        .map(|chunk| {
+            let rays: Vec<Ray> = chunk.iter().map(|d| ray(source, d, extent)).collect();
+            let mut hits = Vec::new();
+            visibility.nearest(&rays, &mut hits);
+            let lost = |(hit, ray): (&Option<Hit>, &Ray)| hit.as_ref().is_none_or(|hit| is_dark(hit, ray, backing));
+            let power = |(draw, is_lost): (&Draw, bool)| if is_lost { draw.power } else { Power::ZERO };
+            chunk.iter().zip(hits.iter().zip(&rays).map(lost)).map(power).sum::<Power>()
+        })
+        .collect::<Vec<_>>()
+        .into_iter()
+        .sum()
+}
+
+/// A point of the source, a direction on the unit square, and the power that goes there.
+struct Draw {
+    point: DVec3,
+    direction: [f64; 2],
+    power: Power,
+}
+
+/// Points in proportion to radiosity, by systematic sampling over the cells.
+fn draw(source: &Source, count: usize, seed: u32) -> Vec<Draw> {
+    let total: f64 = source.finest().map(|(_, p)| f64::from(p.element_sum())).sum();
+    let step = total / count as f64;
+    let mut draws = Vec::with_capacity(count);
+    let (mut passed, mut next) = (0.0, 0.5 * step);
+    for (cell, power) in source.finest() {
+        let sum = f64::from(power.element_sum());
+        passed += sum;
+        while next < passed && draws.len() < count {
+            let number = draws.len() as u32;
+            let [s, t] = jitter(seed, 2 * number);
+            let share: Spectrum = power / sum as f32;
+            draws.push(Draw { point: cell.at(s, t), direction: spread(number, seed), power: share.as_dvec3() * step });
+            next += step;
+        }
+    }
+    draws
+}
+
+/// The plastic-number sequence, shifted by the seed: evenly spread for any count.
+fn spread(number: u32, seed: u32) -> [f64; 2] {
+    let shift = jitter(seed, u32::MAX);
+    let turn = |step: f64, shift: f64| (f64::from(number) * step + shift).fract();
+    [turn(0.754_877_666_246_692_7, shift[0]), turn(0.569_840_290_998_053_3, shift[1])]
+}
+
+fn ray(source: &Source, draw: &Draw, extent: f64) -> Ray {
+    let normal = source.normal();
+    let direction = cosine_direction(normal, draw.direction);
+    Ray { origin: lift(draw.point, normal, extent).as_vec3(), direction: direction.as_vec3() }
+}
+
+/// A direction about `normal`, cosine-distributed for evenly distributed (a, b) in the unit square.
+pub(super) fn cosine_direction(normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+    let tangent = normal.any_orthonormal_vector();
+    let bitangent = normal.cross(tangent);
+    let (sine, cosine) = (a.sqrt(), (1.0 - a).sqrt());
+    let (y, x) = (TAU * b).sin_cos();
+    tangent * (sine * x) + bitangent * (sine * y) + normal * cosine
+}

@@ -1,0 +1,38 @@
+//! Where the power went.
+
+use crate::mesh::Mesh;
+use crate::radiometry::Power;
+use crate::solver::Light;
+
+/// The balance of a solve, W per channel: emitted = absorbed + escaped + unshot + residual.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ledger {
+    /// Given by all emitters.
+    pub emitted: Power,
+    /// Kept by the sides that received it: Σ (1 - ρ) ∫ E.
+    pub absorbed: Power,
+    /// Gone to the open or onto sides that do not radiate, measured by its own cosine-distributed rays.
+    pub escaped: Power,
+    /// Not yet shot.
+    pub unshot: Power,
+}
+
+impl Ledger {
+    /// What the other terms leave over: the discretisation error, plus the sampling error of `escaped`.
+    pub fn residual(&self) -> Power {
+        self.emitted - self.absorbed - self.escaped - self.unshot
+    }
+
+    /// Takes the balance of a mesh. Areas of the frame become m² through `square_metres`, the area in m² of a frame unit squared.
+    pub(super) fn balance(mesh: &Mesh, light: &Light, escaped: Power, square_metres: f64) -> Self {
+        let mut ledger = Self { escaped: escaped * square_metres, ..Self::default() };
+        for (number, patch) in mesh.patches.iter().enumerate() {
+            let received: Power =
+                patch.vertices.iter().map(|v| light.irradiance[*v as usize].as_dvec3() * mesh.weights[*v as usize]).sum();
+            ledger.emitted += patch.exitance.as_dvec3() * patch.area * square_metres;
+            ledger.absorbed += (Power::ONE - patch.reflectance.as_dvec3()) * received * square_metres;
+            ledger.unshot += light.unshot_power(mesh, number) * square_metres;
+        }
+        ledger
+    }
+}

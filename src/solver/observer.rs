@@ -1,0 +1,50 @@
+//! How a solve is watched and stopped.
+
+use crate::radiometry::Power;
+use std::time::Duration;
+
+/// Where a solve is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Shots that are complete.
+    pub shots: u64,
+    /// Shots that tested the mesh.
+    pub meshing_shots: u64,
+    /// Leaves of the mesh.
+    pub elements: usize,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Occlusion rays traced.
+    pub rays: u64,
+    /// Emitted power, W, per channel.
+    pub emitted: Power,
+    /// Power that is still unshot, W, per channel.
+    pub unshot: Power,
+    /// Since the start.
+    pub elapsed: Duration,
+}
+
+/// What an observer wants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Finish what is begun, keep the solution so far.
+    Stop,
+}
+
+/// Hears of a solve after each batch of work: within a shot after every pass of refinement, and after the shot.
+pub trait Observer: Send {
+    /// Called between batches, from the thread that solves.
+    fn progress(&mut self, progress: &Progress) -> Control;
+}
+
+/// An observer that lets the solve run.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn progress(&mut self, _: &Progress) -> Control {
+        Control::Continue
+    }
+}

@@ -1,0 +1,176 @@
+//! Every threshold of the method, and three presets.
+
+use crate::form_factor::{DEEPEST, Formula};
+use crate::mesh::MeshLimits;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// What a shooting patch gives to a source cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shooting {
+    /// The unshot radiosity interpolated there: converges to the true solution.
+    Interpolated,
+    /// The mean over the patch, as in the paper.
+    Mean,
+}
+
+/// What ε_d and ε_r are differences of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// Irradiance: dark materials are meshed as finely as bright ones.
+    Irradiance,
+    /// Radiosity, as in the paper.
+    Radiosity,
+}
+
+/// Which formula gives the form factor of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FormFactorRule {
+    /// Eq. (1) beyond the five-times distance, Eq. (2) within.
+    Hybrid,
+    /// Eq. (1) everywhere.
+    Disk,
+    /// Eq. (2) everywhere.
+    Polygon,
+}
+
+/// All options of a solve. Thresholds marked *relative* are multiples of the reference irradiance, which is the emitted
+/// power over the area that receives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Options {
+    /// Test 1, relative: an element is split while its corners differ by more (ε_d).
+    pub epsilon_d: f64,
+    /// Test 2, relative: … while computed and interpolated light at its centre differ by more (ε_r).
+    pub epsilon_r: f64,
+    /// Test 3, absolute: … while visibility indices at corners, middles of sides and centre differ by this much (ε_v).
+    pub epsilon_v: f64,
+    /// Test 3 is asked where the shot, unoccluded, would give more than this; relative.
+    pub visibility_significance: f64,
+    /// How far the tolerance of tests 1 and 2 follows the light that is there: 0 for the reference alone, 1 for the local
+    /// irradiance alone.
+    pub local_share: f64,
+    /// How the tolerance of tests 1 and 2 grows as elements shrink below the first size h₀: by (h₀/h)^exponent. 0, as in the paper,
+    /// bounds the error at every point; 1 shares out the squared error evenly over the area, so that a shadow edge
+    /// is followed no further than it matters.
+    pub size_exponent: f64,
+    /// What tests 1 and 2 compare.
+    pub quantity: Quantity,
+    /// Where refinement starts and ends.
+    pub limits: MeshLimits,
+    /// Meshing ends when a shot carries less than this fraction of the emitted power.
+    pub meshing_power: f64,
+    /// A cell of the source is split while its estimate differs from its sub-cells' by more (ε_fd); relative, or a form
+    /// factor with `raw_form_factors`.
+    pub epsilon_fd: f64,
+    /// … or while its estimate exceeds this (ε_fe); as above.
+    pub epsilon_fe: f64,
+    /// No cell is split into parts below this fraction of the shooter's area (ε_A).
+    pub epsilon_area: f64,
+    /// ε_fd and ε_fe are form factors, as in the paper.
+    pub raw_form_factors: bool,
+    /// The formula for form factors.
+    pub form_factor: FormFactorRule,
+    /// The factor of the five-times rule.
+    pub distance_factor: f64,
+    /// What a patch shoots.
+    pub shooting: Shooting,
+    /// The solve is converged when unshot over emitted power falls below this.
+    pub tolerance: f64,
+    /// At most this many shots.
+    pub max_shots: Option<u64>,
+    /// At most this long.
+    pub time_limit: Option<Duration>,
+}
+
+/// Named sets of options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// For a look: seconds become tenths.
+    Draft,
+    /// For pictures and baking.
+    Standard,
+    /// For references.
+    Accurate,
+}
+
+impl Preset {
+    /// The options of the preset.
+    pub const fn options(self) -> Options {
+        let standard = Options {
+            epsilon_d: 0.20,
+            epsilon_r: 0.02,
+            epsilon_v: 0.5,
+            visibility_significance: 0.5,
+            local_share: 0.5,
+            size_exponent: 1.0,
+            quantity: Quantity::Irradiance,
+            limits: MeshLimits { initial_size: 0.125, max_depth: 10, min_size: 0.004 },
+            meshing_power: 0.003,
+            epsilon_fd: 0.003,
+            epsilon_fe: 0.10,
+            epsilon_area: 1.0 / 1024.0,
+            raw_form_factors: false,
+            form_factor: FormFactorRule::Hybrid,
+            distance_factor: 10.0,
+            shooting: Shooting::Interpolated,
+            tolerance: 0.001,
+            max_shots: None,
+            time_limit: None,
+        };
+        match self {
+            Preset::Draft => Options {
+                epsilon_d: 0.60,
+                epsilon_r: 0.08,
+                visibility_significance: 1.0,
+                limits: MeshLimits { initial_size: 0.25, max_depth: 7, min_size: 0.016 },
+                meshing_power: 0.02,
+                epsilon_fd: 0.01,
+                epsilon_fe: 0.4,
+                distance_factor: 5.0,
+                tolerance: 0.005,
+                ..standard
+            },
+            Preset::Standard => standard,
+            Preset::Accurate => Options {
+                epsilon_d: 0.08,
+                epsilon_r: 0.005,
+                epsilon_v: 0.3,
+                visibility_significance: 0.2,
+                limits: MeshLimits { initial_size: 0.0625, max_depth: 12, min_size: 0.001 },
+                meshing_power: 0.0005,
+                epsilon_fd: 0.0005,
+                epsilon_fe: 0.03,
+                distance_factor: 20.0,
+                tolerance: 0.0002,
+                ..standard
+            },
+        }
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Preset::Standard.options()
+    }
+}
+
+impl Options {
+    /// The formula that the options name.
+    pub fn formula(&self) -> Formula {
+        match self.form_factor {
+            FormFactorRule::Hybrid => Formula::Hybrid(self.distance_factor),
+            FormFactorRule::Disk => Formula::Disk,
+            FormFactorRule::Polygon => Formula::Polygon,
+        }
+    }
+
+    /// Levels of the source pyramid: the deepest whose cells are not below ε_A, at least one.
+    pub fn source_levels(&self) -> u32 {
+        let levels = (1.0 / self.epsilon_area).log(4.0) + 1e-9;
+        levels.clamp(1.0, f64::from(DEEPEST)) as u32
+    }
+}

@@ -1,0 +1,208 @@
+//! The three tests, in order of cost, on the elements that a shot has reached.
+
+use super::burial::buried;
+use super::escape::Backing;
+use super::options::{Options, Quantity};
+use super::shoot::{evaluate, shoot_at};
+use super::state::Light;
+use crate::form_factor::{Gather, Receiver, Sampler, Source};
+use crate::mesh::{Lattice, Mesh, NONE};
+use crate::radiometry::Spectrum;
+use rustc_hash::FxHashMap;
+
+/// One shot in the middle of its refinement.
+pub(super) struct Refinement<'a> {
+    pub mesh: &'a mut Mesh,
+    pub light: &'a mut Light,
+    /// What the shot gave to each vertex so far.
+    pub arrived: &'a mut Vec<Gather>,
+    pub sampler: &'a Sampler<'a>,
+    pub source: &'a Source,
+    pub options: &'a Options,
+    pub backing: &'a [Backing],
+    /// The scene's reference irradiance.
+    pub reference: f64,
+    pub rays: u64,
+}
+
+impl Refinement<'_> {
+    /// Tests `candidates` (leaves), splits those that fail and computes the shot at the new vertices; returns the new
+    /// leaves, which are to be tested next. Empty when all passed.
+    pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
+        let mut failed = Vec::new();
+        let mut passed = Vec::new();
+        for &element in candidates {
+            if self.mesh.elements[element as usize].is_leaf() && self.mesh.may_split(element) {
+                let fails = self.nodal_difference(element) || self.residual(element);
+                if fails { &mut failed } else { &mut passed }.push(element);
+            }
+        }
+        failed.extend(self.visibility_differs(&passed));
+        failed.sort_unstable();
+        self.split(failed)
+    }
+
+    /// Test 1: corners differ by more than ε_d.
+    fn nodal_difference(&self, element: u32) -> bool {
+        let corners = self.mesh.elements[element as usize].corners();
+        let values = corners.iter().map(|v| self.light.irradiance[*v as usize]);
+        let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
+        let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
+        self.exceeds(element, high - low, self.options.epsilon_d)
+    }
+
+    /// Test 2: at the centre, computed and interpolated light differ by more than ε_r. Both are sums over all shots since
+    /// the element was made (before that the centre was interpolated), so small lights add up.
+    fn residual(&self, element: u32) -> bool {
+        let of = &self.mesh.elements[element as usize];
+        let corners = of.corners();
+        let mean = corners.iter().map(|v| self.light.irradiance[*v as usize]).sum::<Spectrum>() / corners.len() as f32;
+        let residual = (self.light.irradiance[of.centre as usize] - mean).abs();
+        self.exceeds(element, residual, self.options.epsilon_r)
+    }
+
+    fn exceeds(&self, element: u32, difference: Spectrum, epsilon: f64) -> bool {
+        let of = &self.mesh.elements[element as usize];
+        let weight = match self.options.quantity {
+            Quantity::Irradiance => Spectrum::ONE,
+            Quantity::Radiosity => self.mesh.patches[of.patch as usize].reflectance,
+        };
+        let local = f64::from(self.light.irradiance[of.centre as usize].max_element());
+        let share = self.options.local_share;
+        let h0 = self.options.limits.initial_size * self.mesh.frame.extent();
+        let growth = (h0 / self.mesh.longest_side(element)).max(1.0).powf(self.options.size_exponent);
+        let scale = (self.reference * (1.0 - share) + local * share) * growth;
+        f64::from((difference * weight).max_element()) > epsilon * scale
+    }
+
+    /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
+    fn visibility_differs(&mut self, elements: &[u32]) -> Vec<u32> {
+        let threshold = self.options.visibility_significance * self.reference;
+        let mut failed = Vec::new();
+        let mut open = Vec::new();
+        for &element in elements {
+            let of = &self.mesh.elements[element as usize];
+            let known = || of.corners().iter().chain([&of.centre]).map(|v| &self.arrived[*v as usize]);
+            if known().any(|g| f64::from(g.unoccluded.max_element()) > threshold) {
+                let range = known().fold(Range::EMPTY, |range, g| range.with(g.visibility));
+                if range.width() >= self.options.epsilon_v {
+                    failed.push(element);
+                } else {
+                    open.push((element, range));
+                }
+            }
+        }
+        let middles = self.middles(&open);
+        failed.extend(open.iter().filter(|(element, range)| {
+            let of = &self.mesh.elements[*element as usize];
+            let all = of.sides().fold(*range, |range, (side, a, b)| {
+                let known = match of.hanging[side] {
+                    NONE => middles.get(&(of.patch, self.middle(a, b))).copied().flatten(),
+                    vertex => self.arrived[vertex as usize].visibility,
+                };
+                range.with(known)
+            });
+            all.width() >= self.options.epsilon_v
+        }).map(|(element, _)| *element));
+        failed
+    }
+
+    fn middle(&self, a: u32, b: u32) -> Lattice {
+        self.mesh.vertices[a as usize].lattice.midpoint(self.mesh.vertices[b as usize].lattice)
+    }
+
+    /// Visibility indices in the middles of the sides, each computed once for both neighbours.
+    fn middles(&mut self, elements: &[(u32, Range)]) -> FxHashMap<(u32, Lattice), Option<f32>> {
+        let mut keys = Vec::new();
+        let mut points = Vec::new();
+        let mut seen = FxHashMap::default();
+        for (element, _) in elements {
+            let of = self.mesh.elements[*element as usize];
+            for (side, a, b) in of.sides() {
+                let key = (of.patch, self.middle(a, b));
+                if of.hanging[side] == NONE && seen.insert(key, ()).is_none() {
+                    let [pa, pb] = [a, b].map(|v| self.mesh.vertices[v as usize].point);
+                    let normal = self.mesh.patches[of.patch as usize].normal;
+                    // A seed of its own: from the place, as no vertex number is there yet.
+                    let seed = key.1.u.wrapping_mul(0x9e37_79b1) ^ key.1.v.rotate_left(15) ^ of.patch.rotate_left(7);
+                    keys.push(key);
+                    points.push((Receiver { point: (pa + pb) * 0.5, normal }, seed));
+                }
+            }
+        }
+        let (gathers, rays) = evaluate(self.sampler, self.source, &points);
+        self.rays += rays;
+        keys.into_iter().zip(gathers.iter().map(|g| g.visibility)).collect()
+    }
+
+    /// Splits, then splits more until the quadtree is balanced; new vertices get everything before this shot interpolated
+    /// and this shot computed.
+    fn split(&mut self, mut elements: Vec<u32>) -> Vec<u32> {
+        let first_vertex = self.mesh.vertices.len();
+        let mut fresh = Vec::new();
+        while !elements.is_empty() {
+            for element in elements {
+                let first = self.mesh.split(element);
+                fresh.extend(first..first + 4);
+                self.interpolate_past(element, first);
+            }
+            elements = self.mesh.unbalanced();
+        }
+        if fresh.is_empty() {
+            return fresh;
+        }
+        let first = first_vertex as u32;
+        self.mesh.finish_topology();
+        self.mesh.mark_buried(first, &buried(self.mesh, self.sampler.visibility, self.backing, first));
+        let open: Vec<u32> = (first..self.mesh.vertices.len() as u32).filter(|v| !self.mesh.buried[*v as usize]).collect();
+        self.rays += shoot_at(self.mesh, self.sampler, self.source, &open, self.arrived);
+        let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
+        self.mesh.continue_to_buried(&mut irradiance, first);
+        for vertex in first_vertex..self.mesh.vertices.len() {
+            self.arrived[vertex].irradiance = irradiance[vertex];
+            self.light.irradiance[vertex] += irradiance[vertex];
+            self.light.unshot[vertex] += irradiance[vertex];
+        }
+        fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
+        fresh
+    }
+
+    /// Gives the new vertices of a split element what its fan had before this shot.
+    fn interpolate_past(&mut self, parent: u32, first_child: u32) {
+        let known = self.light.irradiance.len() as u32;
+        let count = self.mesh.vertices.len();
+        self.light.irradiance.resize(count, Spectrum::ZERO);
+        self.light.unshot.resize(count, Spectrum::ZERO);
+        self.arrived.resize(count, Gather::default());
+        for vertex in known..count as u32 {
+            let weighted = self.mesh.interpolate(parent, self.mesh.position(vertex));
+            let past = |now: &[Spectrum]| -> Spectrum {
+                weighted.iter().map(|(v, w)| (now[*v as usize] - self.arrived[*v as usize].irradiance) * *w).sum()
+            };
+            let (irradiance, unshot) = (past(&self.light.irradiance), past(&self.light.unshot));
+            self.light.irradiance[vertex as usize] = irradiance;
+            self.light.unshot[vertex as usize] = unshot;
+        }
+        debug_assert!(self.mesh.elements[parent as usize].children == first_child);
+    }
+}
+
+/// The range of the visibility indices of an element.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+impl Range {
+    const EMPTY: Range = Range { low: f32::INFINITY, high: f32::NEG_INFINITY };
+
+    /// A point with nothing of the source above its horizon is left out.
+    fn with(self, index: Option<f32>) -> Self {
+        index.map_or(self, |v| Range { low: self.low.min(v), high: self.high.max(v) })
+    }
+
+    fn width(self) -> f64 {
+        f64::from(self.high - self.low).max(0.0)
+    }
+}

@@ -1,0 +1,265 @@
+//! The loop: select, shoot, refine, account, stop.
+
+use super::burial::buried;
+use super::escape::{Backing, escaped};
+use super::ledger::Ledger;
+use super::observer::{Control, Observer, Progress};
+use super::options::Options;
+use super::refine::Refinement;
+use super::shoot::{faces, shoot_at};
+use super::source::source_of;
+use super::state::Light;
+use crate::form_factor::{Gather, Sampler, Source, SourceThresholds};
+use crate::mesh::Mesh;
+use crate::radiometry::{Power, Spectrum};
+use crate::scene::{Corners, Scene};
+use crate::visibility::{Triangles, Visibility};
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// Why a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StopReason {
+    /// Unshot over emitted power fell below the tolerance.
+    Converged,
+    /// The largest number of shots was reached.
+    MaxShots,
+    /// Time was up.
+    TimeLimit,
+    /// The observer asked for it.
+    Interrupted,
+    /// No surface emits: there is nothing to shoot.
+    NoEmitter,
+}
+
+/// A solve in progress.
+pub struct Solver<'a> {
+    mesh: Mesh,
+    light: Light,
+    visibility: &'a dyn Visibility,
+    options: Options,
+    backing: Vec<Backing>,
+    /// Area of one square of the frame's unit, m².
+    square_metres: f64,
+    reference: f64,
+    escaped: Power,
+    shots: u64,
+    meshing_shots: u64,
+    rays: u64,
+    started: Instant,
+}
+
+/// What a solve leaves.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The refined mesh.
+    pub mesh: Mesh,
+    /// The light on it.
+    pub light: Light,
+    /// Where the power went.
+    pub ledger: Ledger,
+    /// The irradiance that relative thresholds are multiples of, W/m².
+    pub reference_irradiance: f64,
+    /// Shots in all.
+    pub shots: u64,
+    /// Shots that tested the mesh.
+    pub meshing_shots: u64,
+    /// Occlusion rays traced.
+    pub rays: u64,
+    /// Why it ended.
+    pub stop_reason: StopReason,
+}
+
+/// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
+pub fn occluders(scene: &Scene, mesh: &Mesh) -> Triangles {
+    let vertices = scene.vertices.iter().map(|v| mesh.frame.enter(*v).as_vec3()).collect();
+    let indices = scene.surfaces.iter().flat_map(|surface| match surface.corners {
+        Corners::Triangle(t) => vec![t],
+        Corners::Quad([a, b, c, d]) => vec![[a, b, c], [a, c, d]],
+    });
+    Triangles { vertices, indices: indices.collect() }
+}
+
+impl<'a> Solver<'a> {
+    /// Prepares a solve of `scene` on its coarsest `mesh`; `visibility` answers for the scene's [`occluders`].
+    pub fn new(scene: &Scene, mut mesh: Mesh, visibility: &'a dyn Visibility, options: Options) -> Self {
+        let mut backing = Vec::new();
+        let mut fronts = mesh.patches.iter().filter(|p| !p.back);
+        for surface in &scene.surfaces {
+            let normal = fronts.next().map_or(glam::DVec3::Z, |p| p.normal);
+            let triangles = surface.corners.indices().len() - 2;
+            backing.extend(std::iter::repeat_n(Backing { normal, sides: surface.sides }, triangles));
+        }
+        mesh.mark_buried(0, &buried(&mesh, visibility, &backing, 0));
+        let light = Light::new(&mesh);
+        let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
+        let emitted: f64 = mesh.patches.iter().map(|p| f64::from(p.exitance.max_element()) * p.area).sum();
+        let square_metres = (scene.metres_per_unit / mesh.frame.scale()).powi(2);
+        let reference = if area > 0.0 { emitted / area } else { 0.0 };
+        Self {
+            light,
+            visibility,
+            options,
+            backing,
+            square_metres,
+            reference,
+            escaped: Power::ZERO,
+            shots: 0,
+            meshing_shots: 0,
+            rays: 0,
+            started: Instant::now(),
+            mesh,
+        }
+    }
+
+    /// Shoots until a reason to stop; keeps `observer` informed.
+    pub fn run(mut self, observer: &mut dyn Observer) -> Outcome {
+        let stop_reason = self.shoot_until_stop(observer);
+        let ledger = Ledger::balance(&self.mesh, &self.light, self.escaped, self.square_metres);
+        Outcome {
+            mesh: self.mesh,
+            light: self.light,
+            ledger,
+            reference_irradiance: self.reference,
+            shots: self.shots,
+            meshing_shots: self.meshing_shots,
+            rays: self.rays,
+            stop_reason,
+        }
+    }
+
+    fn shoot_until_stop(&mut self, observer: &mut dyn Observer) -> StopReason {
+        let emitted = self.emitted();
+        if emitted.element_sum() <= 0.0 {
+            return StopReason::NoEmitter;
+        }
+        loop {
+            let powers = self.unshot_powers();
+            let unshot: Power = powers.iter().sum();
+            if observer.progress(&self.progress(unshot)) == Control::Stop {
+                return StopReason::Interrupted;
+            }
+            if unshot.element_sum() <= self.options.tolerance * emitted.element_sum() {
+                return StopReason::Converged;
+            }
+            if self.options.max_shots.is_some_and(|most| self.shots >= most) {
+                return StopReason::MaxShots;
+            }
+            if self.options.time_limit.is_some_and(|limit| self.started.elapsed() >= limit) {
+                return StopReason::TimeLimit;
+            }
+            let shooter = select(&powers);
+            let power = powers[shooter].element_sum() / emitted.element_sum();
+            self.shoot(shooter, power, observer);
+        }
+    }
+
+    /// Adds the contribution of one patch everywhere, and refines where it falls.
+    fn shoot(&mut self, shooter: usize, power: f64, observer: &mut dyn Observer) {
+        let thresholds = self.source_thresholds();
+        let source = source_of(&self.mesh, &self.light, shooter, &self.options, &thresholds);
+        self.light.take(&self.mesh, shooter);
+        let extent = self.mesh.frame.extent();
+        let sampler = Sampler { visibility: self.visibility, extent, formula: self.options.formula(), thresholds };
+        let reached: Vec<bool> = self.mesh.patches.iter().map(|p| faces(p, &source, extent)).collect();
+        let mut arrived = self.shoot_at_vertices(&sampler, &source, &reached);
+        if power >= self.options.meshing_power {
+            self.refine(&sampler, &source, &reached, &mut arrived, observer);
+            self.meshing_shots += 1;
+        }
+        // The square root shares the rays so that each shot adds its part to the error of the whole.
+        let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
+        let is_open = |point| self.is_open(shooter, point);
+        self.escaped += escaped(&source, self.visibility, &self.backing, is_open, extent, (rays, self.shots as u32));
+        self.shots += 1;
+    }
+
+    fn shoot_at_vertices(&mut self, sampler: &Sampler, source: &Source, reached: &[bool]) -> Vec<Gather> {
+        let patches = self.mesh.patches.iter().zip(reached).filter(|(_, reached)| **reached);
+        let vertices = patches.flat_map(|(patch, _)| patch.vertices.iter().copied());
+        let vertices: Vec<u32> = vertices.filter(|v| !self.mesh.buried[*v as usize]).collect();
+        let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
+        self.rays += shoot_at(&self.mesh, sampler, source, &vertices, &mut arrived);
+        let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
+        self.mesh.continue_to_buried(&mut irradiance, 0);
+        for (vertex, received) in irradiance.into_iter().enumerate() {
+            arrived[vertex].irradiance = received;
+            self.light.irradiance[vertex] += received;
+            self.light.unshot[vertex] += received;
+        }
+        arrived
+    }
+
+    fn refine(&mut self, sampler: &Sampler, source: &Source, reached: &[bool], arrived: &mut Vec<Gather>, observer: &mut dyn Observer) {
+        let mut candidates: Vec<u32> =
+            self.mesh.leaves().filter(|e| reached[self.mesh.elements[*e as usize].patch as usize]).collect();
+        while !candidates.is_empty() {
+            let mut refinement = Refinement {
+                mesh: &mut self.mesh,
+                light: &mut self.light,
+                arrived,
+                sampler,
+                source,
+                options: &self.options,
+                backing: &self.backing,
+                reference: self.reference,
+                rays: 0,
+            };
+            candidates = refinement.pass(&candidates);
+            self.rays += refinement.rays;
+            if observer.progress(&self.progress(self.unshot_powers().iter().sum())) == Control::Stop {
+                return;
+            }
+        }
+    }
+
+    /// Whether the nearest vertex to a point of a patch is open.
+    fn is_open(&self, patch: usize, point: DVec3) -> bool {
+        let (u, v) = self.mesh.patches[patch].coordinates(point);
+        let weighted = self.mesh.interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
+        let nearest = weighted.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.is_none_or(|(vertex, _)| !self.mesh.buried[*vertex as usize])
+    }
+
+    fn source_thresholds(&self) -> SourceThresholds {
+        let raw = self.options.raw_form_factors;
+        let unit = if raw { 1.0 } else { self.reference };
+        SourceThresholds { difference: self.options.epsilon_fd * unit, estimate: self.options.epsilon_fe * unit, raw }
+    }
+
+    fn unshot_powers(&self) -> Vec<Power> {
+        (0..self.mesh.patches.len()).into_par_iter().map(|p| self.light.unshot_power(&self.mesh, p)).collect()
+    }
+
+    fn emitted(&self) -> Power {
+        self.mesh.patches.iter().map(|p| p.exitance.as_dvec3() * p.area).sum()
+    }
+
+    fn progress(&self, unshot: Power) -> Progress {
+        let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
+        Progress {
+            shots: self.shots,
+            meshing_shots: self.meshing_shots,
+            elements: self.mesh.elements.len() - inner,
+            vertices: self.mesh.vertices.len(),
+            rays: self.rays,
+            emitted: self.emitted() * self.square_metres,
+            unshot: unshot * self.square_metres,
+            elapsed: self.started.elapsed(),
+        }
+    }
+}
+
+/// The patch with the most unshot power; the first of equals.
+fn select(powers: &[Power]) -> usize {
+    let mut best = 0;
+    for (patch, power) in powers.iter().enumerate() {
+        if power.element_sum() > powers[best].element_sum() {
+            best = patch;
+        }
+    }
+    best
+}
