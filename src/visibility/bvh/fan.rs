@@ -7,7 +7,7 @@
 //! enters all boxes above, and its answer is the same in whatever company it travels.
 
 use super::lanes::Lanes;
-use super::probe::Probe;
+use super::probe::{Probe, Verdict};
 use super::tree::{Content, Node, Tree};
 use crate::visibility::{COORDINATE_LIMIT, Fans, MAX_FAN, T_FAR, T_NEAR, in_range};
 use glam::Vec3;
@@ -22,6 +22,7 @@ const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 struct Segments {
     direction: [[f32; MAX_FAN]; 3],
     inverse: [[f32; MAX_FAN]; 3],
+    length: [f32; MAX_FAN],
     origin: Vec3,
     /// About where the segments go.
     heading: Vec3,
@@ -36,6 +37,7 @@ pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
     let mut segments = Segments {
         direction: [[0.0; MAX_FAN]; 3],
         inverse: [[0.0; MAX_FAN]; 3],
+        length: [0.0; MAX_FAN],
         origin: Vec3::ZERO,
         heading: Vec3::ZERO,
         active: 0,
@@ -65,10 +67,13 @@ impl Segments {
                 *inverse = 1.0 / if tiny { SHORTEST } else { *direction };
             }
         }
-        let direction = |i: usize| Vec3::from_array([0, 1, 2].map(|k| self.direction[k][i]));
+        for (i, length) in self.length[..count].iter_mut().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|axis| self.direction[axis][i]);
+            *length = (x * x + y * y + z * z).sqrt();
+        }
         self.heading = match count {
             0 => Vec3::ZERO,
-            n => direction(0) + direction(n - 1),
+            n => self.direction(0) + self.direction(n - 1),
         };
         let unused = (MAX_FAN - count) as u32;
         self.active = self.traceable::<L>() & u64::MAX.checked_shr(unused).unwrap_or(0);
@@ -182,9 +187,23 @@ impl Segments {
                 L::load(&y[group..]),
                 L::load(&z[group..]),
             ];
-            let crossed = probe.crossed(direction, L::splat(T_NEAR), L::splat(T_FAR));
+            let length = L::load(&self.length[group..]);
+            let Verdict {
+                mut crossed,
+                doubtful,
+            } = probe.crossed(direction, length);
+            let mut doubtful = doubtful & candidates;
+            while doubtful != 0 {
+                let lane = doubtful.trailing_zeros();
+                crossed |= u32::from(probe.settle(self.direction(group + lane as usize))) << lane;
+                doubtful &= doubtful - 1;
+            }
             self.active &= !(u64::from(crossed & candidates) << group);
         }
+    }
+
+    fn direction(&self, segment: usize) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.direction[axis][segment]))
     }
 
     /// The bits of the active segments from `group` on, as many as there are lanes.
