@@ -93,10 +93,15 @@ impl Fans {
         (self.origins[i], targets)
     }
 
-    /// The range of fan `i` in the target arrays.
+    /// The range of fan `i` in the target arrays; a mask has room for it.
     pub(crate) fn range(&self, i: usize) -> std::ops::Range<usize> {
         let end = self.starts.get(i + 1).map_or(self.x.len(), |&s| s as usize);
-        self.starts[i] as usize..end
+        let range = self.starts[i] as usize..end;
+        assert!(
+            range.len() <= MAX_FAN,
+            "a fan has at most {MAX_FAN} targets"
+        );
+        range
     }
 }
 

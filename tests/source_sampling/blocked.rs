@@ -13,6 +13,7 @@ fn a_blocker_takes_away_what_lies_behind_it() {
         let blocker = half_plane(edge);
         let visible = cut(corners, 2.0 * edge);
         let receiver = Receiver {
+            irradiance: 0.0,
             point: DVec3::ZERO,
             normal: DVec3::Z,
         };
@@ -37,6 +38,7 @@ fn a_blocker_takes_away_what_lies_behind_it() {
 fn what_is_hidden_wholly_gives_nothing() {
     for engine in engines(&half_plane(-3.0)) {
         let receiver = Receiver {
+            irradiance: 0.0,
             point: DVec3::ZERO,
             normal: DVec3::Z,
         };
@@ -53,6 +55,7 @@ fn what_is_hidden_wholly_gives_nothing() {
 fn a_blocker_before_a_source_that_is_not_constant_hides_its_own_light() {
     let visible = cut(&QUAD, 0.2);
     let receiver = Receiver {
+        irradiance: 0.0,
         point: DVec3::ZERO,
         normal: DVec3::Z,
     };
@@ -128,6 +131,7 @@ fn row_of_receivers(count: u32) -> Vec<(Receiver, u32)> {
         .map(|i| {
             (
                 Receiver {
+                    irradiance: 0.0,
                     point: point(i),
                     normal: DVec3::Z,
                 },

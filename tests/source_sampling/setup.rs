@@ -148,6 +148,10 @@ fn sampler(visibility: &dyn Visibility, formula: Formula, threshold: f64) -> Sam
         difference: threshold,
         estimate: 10.0 * threshold,
         raw: false,
+        scale: ToleranceScale {
+            reference: 1.0,
+            local_share: 0.0,
+        },
     };
     Sampler {
         visibility,

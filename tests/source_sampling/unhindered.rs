@@ -49,6 +49,7 @@ fn the_horizon_cuts_a_source_and_the_rest_counts_whole() {
     for height in [0.4, 0.0, -0.4] {
         let normal = dvec3(-1.0, 0.0, height).normalize();
         let receiver = Receiver {
+            irradiance: 0.0,
             point: DVec3::ZERO,
             normal,
         };
@@ -69,10 +70,12 @@ fn the_horizon_cuts_a_source_and_the_rest_counts_whole() {
 #[test]
 fn nothing_arrives_from_a_source_that_looks_away_or_lies_below() {
     let above = Receiver {
+        irradiance: 0.0,
         point: dvec3(0.2, 0.1, 2.0),
         normal: -DVec3::Z,
     };
     let turned = Receiver {
+        irradiance: 0.0,
         point: DVec3::ZERO,
         normal: -DVec3::Z,
     };
@@ -90,6 +93,7 @@ fn nothing_arrives_from_a_source_that_looks_away_or_lies_below() {
 
 fn near_and_far() -> [(Receiver, &'static str); 5] {
     let at = |x, y, z, normal: DVec3| Receiver {
+        irradiance: 0.0,
         point: dvec3(x, y, z),
         normal: normal.normalize(),
     };
