@@ -65,7 +65,10 @@ mod tests {
             let exact = angle / angle.sin();
             let error = angle_over_sine(angle.cos()) / exact - 1.0;
             // Beside π the cosine itself has lost the angle: 1e-16 / sin² θ.
-            assert!(error.abs() < 3e-11 + 1e-15 / angle.sin().powi(2), "{angle}: {error:e}");
+            assert!(
+                error.abs() < 3e-11 + 1e-15 / angle.sin().powi(2),
+                "{angle}: {error:e}"
+            );
         }
         assert!((angle_over_sine(1.0) - 1.0).abs() < 2e-11);
         assert!(angle_over_sine(-1.0).is_finite());

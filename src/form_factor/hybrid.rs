@@ -40,7 +40,11 @@ pub struct Sight {
 }
 
 impl Sight {
-    const NOTHING: Sight = Sight { form_factor: 0.0, uncertainty: 0.0, cut: false };
+    const NOTHING: Sight = Sight {
+        form_factor: 0.0,
+        uncertainty: 0.0,
+        cut: false,
+    };
 }
 
 impl Formula {
@@ -66,7 +70,11 @@ impl Formula {
         if far && !cut {
             let form_factor = point_to_disk(receiver.normal, to, source_normal, cell.area);
             let uncertainty = cell.diameter * cell.diameter / to.length_squared();
-            return Sight { form_factor, uncertainty, cut: false };
+            return Sight {
+                form_factor,
+                uncertainty,
+                cut: false,
+            };
         }
         let corners = cell.corners().map(|corner| corner - receiver.point);
         let form_factor = if cut {
@@ -74,18 +82,26 @@ impl Formula {
         } else {
             point_to_quad(receiver.normal, corners).max(0.0)
         };
-        Sight { form_factor, uncertainty: 0.0, cut }
+        Sight {
+            form_factor,
+            uncertainty: 0.0,
+            cut,
+        }
     }
 }
 
 fn cut_by_horizon(receiver: Receiver, cell: &Cell) -> bool {
-    cell.corners().iter().any(|corner| receiver.normal.dot(*corner - receiver.point) < 0.0)
+    cell.corners()
+        .iter()
+        .any(|corner| receiver.normal.dot(*corner - receiver.point) < 0.0)
 }
 
 /// What the horizon leaves of a cell, relative to the receiver.
 pub fn above_horizon(receiver: Receiver, cell: &Cell) -> Clipped {
     let corners = cell.corners().map(|corner| corner - receiver.point);
-    polygon::clip(&corners[..cell.corner_count()], |corner| receiver.normal.dot(corner))
+    polygon::clip(&corners[..cell.corner_count()], |corner| {
+        receiver.normal.dot(corner)
+    })
 }
 
 /// The point at (s, t) in the unit square, mapped into what is left of a cell cut by the horizon.
@@ -93,6 +109,9 @@ pub fn point_in_cut(cut: &Clipped, s: f64, t: f64) -> DVec3 {
     let corners = cut.corners();
     let from = polygon::centroid(corners);
     let k = (s * corners.len() as f64) as usize % corners.len();
-    let along = corners[k].lerp(corners[(k + 1) % corners.len()], (s * corners.len() as f64).fract());
+    let along = corners[k].lerp(
+        corners[(k + 1) % corners.len()],
+        (s * corners.len() as f64).fract(),
+    );
     from.lerp(along, 0.9 * t.sqrt())
 }

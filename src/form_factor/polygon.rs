@@ -35,13 +35,18 @@ pub(super) fn point_to_quad(normal: DVec3, corners: [DVec3; 4]) -> f64 {
     let y: [f64; 4] = std::array::from_fn(|i| y[i] * scale[i]);
     let z: [f64; 4] = std::array::from_fn(|i| z[i] * scale[i]);
     let next = |i: usize| (i + 1) % 4;
-    let cosines = std::array::from_fn(|i| x[i] * x[next(i)] + y[i] * y[next(i)] + z[i] * z[next(i)]);
+    let cosines =
+        std::array::from_fn(|i| x[i] * x[next(i)] + y[i] * y[next(i)] + z[i] * z[next(i)]);
     let heights: [f64; 4] = std::array::from_fn(|i| {
         let j = next(i);
-        normal.x * (y[i] * z[j] - z[i] * y[j]) + normal.y * (z[i] * x[j] - x[i] * z[j]) + normal.z * (x[i] * y[j] - y[i] * x[j])
+        normal.x * (y[i] * z[j] - z[i] * y[j])
+            + normal.y * (z[i] * x[j] - x[i] * z[j])
+            + normal.z * (x[i] * y[j] - y[i] * x[j])
     });
     let angles = angles_over_sines(cosines);
-    let sum: f64 = std::array::from_fn::<f64, 4, _>(|i| heights[i] * angles[i]).iter().sum();
+    let sum: f64 = std::array::from_fn::<f64, 4, _>(|i| heights[i] * angles[i])
+        .iter()
+        .sum();
     -sum / (2.0 * PI)
 }
 
@@ -52,5 +57,8 @@ pub fn point_to_visible_polygon(normal: DVec3, corners: &[DVec3]) -> (f64, Clipp
     if visible.corners().len() < 3 {
         return (0.0, visible);
     }
-    (point_to_polygon(normal, visible.corners()).max(0.0), visible)
+    (
+        point_to_polygon(normal, visible.corners()).max(0.0),
+        visible,
+    )
 }

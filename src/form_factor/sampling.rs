@@ -39,7 +39,11 @@ pub struct ToleranceScale {
 impl ToleranceScale {
     /// The scale where the irradiance is `local`.
     pub fn at(&self, local: f64) -> f64 {
-        if self.local_share == 0.0 { self.reference } else { self.reference * (local / self.reference).powf(self.local_share) }
+        if self.local_share == 0.0 {
+            self.reference
+        } else {
+            self.reference * (local / self.reference).powf(self.local_share)
+        }
     }
 }
 
@@ -138,14 +142,28 @@ impl Default for Scratch {
 
 impl Sampler<'_> {
     /// Evaluates `source` at each receiver into `gathers`; returns the number of rays. Keys seed the jitter of each receiver.
-    pub fn gather(&self, source: &Source, receivers: &[(Receiver, u32)], scratch: &mut Scratch, gathers: &mut Vec<Gather>) -> u64 {
-        scratch.leaves.resize_with(receivers.len().max(scratch.leaves.len()), Vec::new);
+    pub fn gather(
+        &self,
+        source: &Source,
+        receivers: &[(Receiver, u32)],
+        scratch: &mut Scratch,
+        gathers: &mut Vec<Gather>,
+    ) -> u64 {
+        scratch
+            .leaves
+            .resize_with(receivers.len().max(scratch.leaves.len()), Vec::new);
         scratch.fresh.clear();
         scratch.limits.clear();
         for (i, (receiver, _)) in receivers.iter().enumerate() {
             scratch.leaves[i].clear();
             let limits = self.limits(source, *receiver);
-            self.partition(source, *receiver, limits, &mut scratch.pending, &mut scratch.leaves[i]);
+            self.partition(
+                source,
+                *receiver,
+                limits,
+                &mut scratch.pending,
+                &mut scratch.leaves[i],
+            );
             scratch.limits.push(limits);
             scratch.fresh.push(0);
         }
@@ -157,36 +175,75 @@ impl Sampler<'_> {
                 break;
             }
             for (i, (receiver, _)) in receivers.iter().enumerate() {
-                let Scratch { leaves, limits, fresh, state, .. } = scratch;
-                fresh[i] = self.split_disagreeing(source, *receiver, limits[i], &mut leaves[i], state);
+                let Scratch {
+                    leaves,
+                    limits,
+                    fresh,
+                    state,
+                    ..
+                } = scratch;
+                fresh[i] =
+                    self.split_disagreeing(source, *receiver, limits[i], &mut leaves[i], state);
             }
         }
         gathers.clear();
-        gathers.extend(scratch.leaves[..receivers.len()].iter().map(|leaves| sum(leaves)));
+        gathers.extend(
+            scratch.leaves[..receivers.len()]
+                .iter()
+                .map(|leaves| sum(leaves)),
+        );
         rays
     }
 
     /// The thresholds at one point: they follow what it has, or what the source would give it if that is more.
     fn limits(&self, source: &Source, receiver: Receiver) -> Limits {
-        let SourceThresholds { difference, estimate, raw, scale } = self.thresholds;
+        let SourceThresholds {
+            difference,
+            estimate,
+            raw,
+            scale,
+        } = self.thresholds;
         if raw {
-            return Limits { difference, estimate };
+            return Limits {
+                difference,
+                estimate,
+            };
         }
         let from = |cell| {
             let of = source.cell(cell);
-            let factor = point_to_disk(receiver.normal, of.centroid - receiver.point, source.normal(), of.area);
+            let factor = point_to_disk(
+                receiver.normal,
+                of.centroid - receiver.point,
+                source.normal(),
+                of.area,
+            );
             f64::from(of.radiosity.max_element()) * factor
         };
-        let unit = scale.at(children(0).map(from).sum::<f64>().max(f64::from(receiver.irradiance)));
-        Limits { difference: difference * unit, estimate: estimate * unit }
+        let unit = scale.at(children(0)
+            .map(from)
+            .sum::<f64>()
+            .max(f64::from(receiver.irradiance)));
+        Limits {
+            difference: difference * unit,
+            estimate: estimate * unit,
+        }
     }
 
     /// Step 1: the cells for one point, found without rays.
-    fn partition(&self, source: &Source, receiver: Receiver, limits: Limits, pending: &mut Vec<CellIndex>, leaves: &mut Vec<Leaf>) {
+    fn partition(
+        &self,
+        source: &Source,
+        receiver: Receiver,
+        limits: Limits,
+        pending: &mut Vec<CellIndex>,
+        leaves: &mut Vec<Leaf>,
+    ) {
         pending.clear();
         pending.extend((1..=4).rev());
         while let Some(cell) = pending.pop() {
-            let sight = self.formula.sight(receiver, source.cell(cell), source.normal());
+            let sight = self
+                .formula
+                .sight(receiver, source.cell(cell), source.normal());
             if sight.form_factor <= 0.0 {
                 continue;
             }
@@ -203,7 +260,8 @@ impl Sampler<'_> {
                     }
                     // The finer estimate is at hand, and a third of the difference is left of its second-order error.
                     let change = parts.contribution - leaf.contribution;
-                    leaf.contribution = (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
+                    leaf.contribution =
+                        (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
                     leaf.aimed = leaf.contribution;
                 }
             }
@@ -214,16 +272,44 @@ impl Sampler<'_> {
     fn leaf(&self, source: &Source, receiver: Receiver, cell: CellIndex, sight: &Sight) -> Leaf {
         let of = source.cell(cell);
         let contribution = of.radiosity * sight.form_factor as f32;
-        let measure = if self.thresholds.raw { sight.form_factor as f32 } else { contribution.max_element() };
-        let area = if sight.cut { vector_area(above_horizon(receiver, of).corners()).length() } else { of.area };
-        Leaf { cell, contribution, aimed: contribution, measure, area: area as f32, cut: sight.cut, seen: false }
+        let measure = if self.thresholds.raw {
+            sight.form_factor as f32
+        } else {
+            contribution.max_element()
+        };
+        let area = if sight.cut {
+            vector_area(above_horizon(receiver, of).corners()).length()
+        } else {
+            of.area
+        };
+        Leaf {
+            cell,
+            contribution,
+            aimed: contribution,
+            measure,
+            area: area as f32,
+            cut: sight.cut,
+            seen: false,
+        }
     }
 
     /// The estimate from the four parts of a cell; `None` where a bound shows that it is the cell's own.
-    fn parts(&self, source: &Source, receiver: Receiver, limits: Limits, leaf: &Leaf, sight: &Sight) -> Option<Parts> {
+    fn parts(
+        &self,
+        source: &Source,
+        receiver: Receiver,
+        limits: Limits,
+        leaf: &Leaf,
+        sight: &Sight,
+    ) -> Option<Parts> {
         let cell = source.cell(leaf.cell);
-        let variation = if self.thresholds.raw { 0.0 } else { f64::from(cell.variation) * sight.form_factor };
-        if f64::from(leaf.measure) * sight.uncertainty + variation <= NEGLIGIBLE * limits.difference {
+        let variation = if self.thresholds.raw {
+            0.0
+        } else {
+            f64::from(cell.variation) * sight.form_factor
+        };
+        if f64::from(leaf.measure) * sight.uncertainty + variation <= NEGLIGIBLE * limits.difference
+        {
             return None;
         }
         let (mut contribution, mut sum) = (Spectrum::ZERO, 0.0);
@@ -231,9 +317,16 @@ impl Sampler<'_> {
             let part = source.cell(child);
             // Eq. (2) has the whole right already; how the parts share it, their centres tell well enough.
             let factor = if sight.uncertainty > 0.0 {
-                self.formula.sight(receiver, part, source.normal()).form_factor
+                self.formula
+                    .sight(receiver, part, source.normal())
+                    .form_factor
             } else {
-                point_to_disk(receiver.normal, part.centroid - receiver.point, source.normal(), part.area)
+                point_to_disk(
+                    receiver.normal,
+                    part.centroid - receiver.point,
+                    source.normal(),
+                    part.area,
+                )
             };
             contribution += part.radiosity * factor as f32;
             sum += factor;
@@ -247,12 +340,22 @@ impl Sampler<'_> {
         } else {
             f64::from((contribution - leaf.contribution).abs().max_element())
         };
-        Some(Parts { contribution, difference })
+        Some(Parts {
+            contribution,
+            difference,
+        })
     }
 
     /// Step 2: a ray to each fresh leaf of each point.
     fn trace(&self, source: &Source, receivers: &[(Receiver, u32)], scratch: &mut Scratch) -> u64 {
-        let Scratch { leaves, fresh, fans, owners, masks, .. } = scratch;
+        let Scratch {
+            leaves,
+            fresh,
+            fans,
+            owners,
+            masks,
+            ..
+        } = scratch;
         fans.clear();
         owners.clear();
         for (i, (receiver, key)) in receivers.iter().enumerate() {
@@ -283,24 +386,43 @@ impl Sampler<'_> {
             leaf.aimed = leaf.contribution * (source.radiosity_at(leaf.cell, s, t) / mean);
         }
         // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
-        let point = if leaf.cut { receiver.point + point_in_cut(&above_horizon(receiver, cell), s, t) } else { cell.at(s, t) };
+        let point = if leaf.cut {
+            receiver.point + point_in_cut(&above_horizon(receiver, cell), s, t)
+        } else {
+            cell.at(s, t)
+        };
         lift(point, source.normal(), self.extent).as_vec3()
     }
 
     /// Step 3: replaces leaves that disagree with a neighbour by their children, at the end; gives where those begin.
-    fn split_disagreeing(&self, source: &Source, receiver: Receiver, limits: Limits, leaves: &mut Vec<Leaf>, state: &mut [State]) -> usize {
+    fn split_disagreeing(
+        &self,
+        source: &Source,
+        receiver: Receiver,
+        limits: Limits,
+        leaves: &mut Vec<Leaf>,
+        state: &mut [State],
+    ) -> usize {
         let seen = leaves.iter().filter(|leaf| leaf.seen).count();
         if seen == 0 || seen == leaves.len() {
             return leaves.len();
         }
         for leaf in leaves.iter() {
-            state[leaf.cell as usize] = if leaf.seen { State::Seen } else { State::Occluded };
+            state[leaf.cell as usize] = if leaf.seen {
+                State::Seen
+            } else {
+                State::Occluded
+            };
             mark_ancestors(leaf.cell, state, State::Split);
         }
         let splits = |leaf: &Leaf| {
             f64::from(leaf.measure) > limits.difference
                 && source.has_children(leaf.cell)
-                && source.neighbours(leaf.cell).iter().flatten().any(|n| disagrees(*n, state[leaf.cell as usize], state))
+                && source
+                    .neighbours(leaf.cell)
+                    .iter()
+                    .flatten()
+                    .any(|n| disagrees(*n, state[leaf.cell as usize], state))
         };
         let split: Vec<Leaf> = leaves.iter().copied().filter(splits).collect();
         for leaf in leaves.iter() {
@@ -314,7 +436,9 @@ impl Sampler<'_> {
         leaves.retain(|leaf| next.next_if_eq(&leaf.cell).is_none());
         let fresh = leaves.len();
         for cell in split.iter().flat_map(|leaf| children(leaf.cell)) {
-            let sight = self.formula.sight(receiver, source.cell(cell), source.normal());
+            let sight = self
+                .formula
+                .sight(receiver, source.cell(cell), source.normal());
             if sight.form_factor > 0.0 {
                 leaves.push(self.leaf(source, receiver, cell, &sight));
             }
@@ -340,7 +464,12 @@ fn mark_ancestors(mut cell: CellIndex, state: &mut [State], mark: State) {
 /// Whether the leaf that covers `cell`, or any leaf inside it, is in another state than `own`.
 fn disagrees(cell: CellIndex, own: State, state: &[State]) -> bool {
     match state[cell as usize] {
-        State::Split => children(cell).any(|child| state.get(child as usize).is_some_and(|s| *s != State::Outside) && disagrees(child, own, state)),
+        State::Split => children(cell).any(|child| {
+            state
+                .get(child as usize)
+                .is_some_and(|s| *s != State::Outside)
+                && disagrees(child, own, state)
+        }),
         State::Outside => {
             let mut above = cell;
             while above > 0 {

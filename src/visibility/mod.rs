@@ -89,7 +89,9 @@ impl Fans {
 
     /// Origin and targets of fan `i`.
     pub fn fan(&self, i: usize) -> (Vec3, impl ExactSizeIterator<Item = Vec3> + '_) {
-        let targets = self.range(i).map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
+        let targets = self
+            .range(i)
+            .map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
         (self.origins[i], targets)
     }
 
