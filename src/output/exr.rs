@@ -4,7 +4,7 @@ use super::{WriteError, check_picture, write_atomically};
 use ::exr::error::Error;
 use ::exr::meta::attribute::{Chromaticities, Text};
 use ::exr::prelude::{
-    Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec, Vec2, WritableImage,
 };
 use std::io;
 use std::path::Path;
@@ -31,10 +31,13 @@ pub fn write_exr(
     write_atomically(path, |out| {
         check_picture(width, height, pixels.len())?;
         let size = Vec2(width as usize, height as usize);
-        let channels = SpecificChannels::rgba(|Vec2(x, y)| {
-            let [r, g, b, a] = pixels[y * size.0 + x];
-            (r, g, b, a)
-        });
+        let channel = |(name, i): (&str, usize)| {
+            let samples = pixels.iter().map(|pixel| pixel[i]).collect();
+            AnyChannel::new(name, FlatSamples::F32(samples))
+        };
+        // Flat samples rather than typed pixels: the crate's typed writer takes longer to compile than all else here.
+        let list: SmallVec<_> = [("A", 3), ("B", 2), ("G", 1), ("R", 0)].into_iter().map(channel).collect();
+        let channels = AnyChannels::sort(list);
         let attributes = LayerAttributes {
             comments: Some(Text::from(
                 "Radiance, W m^-2 sr^-1, linear Rec. 709, premultiplied alpha",
