@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3, dvec3};
 use radiosity::form_factor::{
-    DEEPEST, Formula, Gather, Receiver, Sampler, Scratch, Source, SourceThresholds,
+    DEEPEST, Formula, Gather, Receiver, Sampler, Scratch, Source, SourceThresholds, ToleranceScale,
     point_to_visible_polygon,
 };
 use radiosity::radiometry::Spectrum;
