@@ -7,7 +7,7 @@
 //! enters all boxes above, and its answer is the same in whatever company it travels.
 
 use super::lanes::Lanes;
-use super::probe::{Probe, Verdict};
+use super::probe::{Probe, Verdict, error_bound};
 use super::tree::{Content, Node, Tree};
 use crate::visibility::{COORDINATE_LIMIT, Fans, MAX_FAN, T_FAR, T_NEAR, in_range};
 use glam::Vec3;
@@ -21,8 +21,10 @@ const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 #[repr(align(64))]
 struct Segments {
     direction: [[f32; MAX_FAN]; 3],
+    /// One over the direction's components, finite.
     inverse: [[f32; MAX_FAN]; 3],
-    length: [f32; MAX_FAN],
+    /// Sum of the magnitudes of a direction's components.
+    size: [f32; MAX_FAN],
     origin: Vec3,
     /// About where the segments go.
     heading: Vec3,
@@ -37,7 +39,7 @@ pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
     let mut segments = Segments {
         direction: [[0.0; MAX_FAN]; 3],
         inverse: [[0.0; MAX_FAN]; 3],
-        length: [0.0; MAX_FAN],
+        size: [0.0; MAX_FAN],
         origin: Vec3::ZERO,
         heading: Vec3::ZERO,
         active: 0,
@@ -51,49 +53,50 @@ pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
 }
 
 impl Segments {
-    /// Takes fan `fan`; segments that cannot be traced are left out.
+    /// Takes fan `fan`; segments that cannot be traced are left out, as
+    /// [`traceable`](crate::visibility::traceable) has it.
     #[inline(always)]
     fn fill<L: Lanes>(&mut self, fans: &Fans, fan: usize) {
         let range = fans.range(fan);
         let count = range.len();
         self.origin = fans.origins[fan];
-        for (axis, targets) in [&fans.x, &fans.y, &fans.z].into_iter().enumerate() {
-            let targets = &targets[range.clone()];
-            let directions = &mut self.direction[axis][..count];
-            let inverses = &mut self.inverse[axis][..count];
-            for ((direction, inverse), target) in directions.iter_mut().zip(inverses).zip(targets) {
-                *direction = target - self.origin[axis];
-                let tiny = direction.abs() < SHORTEST;
-                *inverse = 1.0 / if tiny { SHORTEST } else { *direction };
-            }
+        for (row, targets) in self.direction.iter_mut().zip([&fans.x, &fans.y, &fans.z]) {
+            row[..count].copy_from_slice(&targets[range.clone()]);
         }
-        for (i, length) in self.length[..count].iter_mut().enumerate() {
-            let [x, y, z] = [0, 1, 2].map(|axis| self.direction[axis][i]);
-            *length = (x * x + y * y + z * z).sqrt();
+        let mut traceable = 0;
+        for group in (0..count).step_by(L::WIDTH) {
+            traceable |= u64::from(self.prepare::<L>(group)) << group;
         }
+        let unused = (MAX_FAN - count) as u32;
+        let used = u64::MAX.checked_shr(unused).unwrap_or(0);
+        self.active = if in_range(self.origin) {
+            traceable & used
+        } else {
+            0
+        };
         self.heading = match count {
             0 => Vec3::ZERO,
             n => self.direction(0) + self.direction(n - 1),
         };
-        let unused = (MAX_FAN - count) as u32;
-        self.active = self.traceable::<L>() & u64::MAX.checked_shr(unused).unwrap_or(0);
     }
 
-    /// Mask of the segments within range, as [`traceable`](crate::visibility::traceable) has it.
+    /// Turns a group of targets into directions and what follows from them; mask of those in range.
     #[inline(always)]
-    fn traceable<L: Lanes>(&self) -> u64 {
-        if !in_range(self.origin) {
-            return 0;
-        }
+    fn prepare<L: Lanes>(&mut self, group: usize) -> u32 {
         let limit = L::splat(COORDINATE_LIMIT);
-        let mut mask = u64::MAX;
-        for row in &self.direction {
-            let groups = (0..MAX_FAN).step_by(L::WIDTH);
-            mask &= groups.fold(0, |row_mask, group| {
-                row_mask | u64::from(L::load(&row[group..]).abs().le(limit)) << group
-            });
+        let (mut size, mut in_range) = (L::splat(0.0), u32::MAX);
+        for axis in 0..3 {
+            let target = L::load(&self.direction[axis][group..]);
+            let direction = target.sub(L::splat(self.origin[axis]));
+            direction.store(&mut self.direction[axis][group..]);
+            direction
+                .inverse(SHORTEST)
+                .store(&mut self.inverse[axis][group..]);
+            size = size.add(direction.abs());
+            in_range &= direction.abs().le(limit);
         }
-        mask
+        size.store(&mut self.size[group..]);
+        in_range
     }
 
     /// Clears the bits of occluded segments in `active`.
@@ -126,8 +129,10 @@ impl Segments {
             Content::Leaf(triangles) => {
                 let entering = self.entering::<L>(node, false);
                 if entering != 0 {
+                    let [min, max] = [node.min, node.max].map(|v| Vec3::from(v) - self.origin);
+                    let error = error_bound(min, max);
                     for corners in &tree.corners[triangles] {
-                        self.test::<L>(&Probe::new(corners, self.origin), entering);
+                        self.test::<L>(&Probe::new(corners, self.origin), error, entering);
                     }
                 }
                 None
@@ -175,7 +180,7 @@ impl Segments {
 
     /// Tests the segments in `candidates` against one triangle.
     #[inline(always)]
-    fn test<L: Lanes>(&mut self, probe: &Probe, candidates: u64) {
+    fn test<L: Lanes>(&mut self, probe: &Probe, error: f32, candidates: u64) {
         for group in (0..MAX_FAN).step_by(L::WIDTH) {
             let candidates = (candidates >> group) as u32 & self.active_in::<L>(group);
             if candidates == 0 {
@@ -187,11 +192,11 @@ impl Segments {
                 L::load(&y[group..]),
                 L::load(&z[group..]),
             ];
-            let length = L::load(&self.length[group..]);
+            let error = L::load(&self.size[group..]).mul(L::splat(error));
             let Verdict {
                 mut crossed,
                 doubtful,
-            } = probe.crossed(direction, length);
+            } = probe.crossed(direction, error);
             let mut doubtful = doubtful & candidates;
             while doubtful != 0 {
                 let lane = doubtful.trailing_zeros();

@@ -10,8 +10,12 @@ pub trait Lanes: Copy {
     fn splat(value: f32) -> Self;
     /// The first [`Self::WIDTH`] numbers of a slice.
     fn load(values: &[f32]) -> Self;
+    /// Writes them to the beginning of a slice.
+    fn store(self, values: &mut [f32]);
     /// Sum.
     fn add(self, other: Self) -> Self;
+    /// Difference.
+    fn sub(self, other: Self) -> Self;
     /// Product.
     fn mul(self, other: Self) -> Self;
     /// The smaller one.
@@ -20,6 +24,8 @@ pub trait Lanes: Copy {
     fn max(self, other: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+    /// One over each number; one over `least` where it is closer to 0 than that.
+    fn inverse(self, least: f32) -> Self;
     /// With the sign changed where `other` is negative.
     fn with_sign_times(self, other: Self) -> Self;
     /// Mask of the lanes that are less.
@@ -60,8 +66,18 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn store(self, values: &mut [f32]) {
+        values[..WIDTH].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
     }
 
     #[inline(always)]
@@ -82,6 +98,14 @@ impl Lanes for Portable {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn inverse(self, least: f32) -> Self {
+        Self(
+            self.0
+                .map(|a| 1.0 / if a.abs() < least { least } else { a }),
+        )
     }
 
     #[inline(always)]

@@ -11,18 +11,26 @@ use super::lanes::Lanes;
 use crate::visibility::{T_FAR, T_NEAR};
 use glam::{DVec3, Vec3};
 
-/// Error of an edge function, over the lengths of direction, sum and difference: both of the latter are
-/// rounded, so are the products and the differences in the cross product, and the products and sums in the
-/// dot product; that makes 7 times half of an epsilon, times √2 for the lengths. The rest is reserve.
+/// Relative error of an edge function, over |p + q| |q - p| |direction| in the norms that [`error_bound`] says:
+/// sum and difference are rounded, so are the products and the difference in the cross product, and the
+/// products and sums in the dot product; that makes 7 halves of an epsilon, twice for the two
+/// products in the cross product. The rest is reserve.
 const ERROR: f32 = 8.0 * f32::EPSILON;
+
+/// Bound of the error of the edge functions of all triangles in a box from `min` to `max`, relative to the
+/// origin, for a direction whose components' magnitudes sum up to 1.
+#[inline(always)]
+pub fn error_bound(min: Vec3, max: Vec3) -> f32 {
+    let farthest = min.abs().max(max.abs()).max_element();
+    let longest = (max - min).max_element();
+    ERROR * (2.0 * farthest) * longest
+}
 
 /// A triangle relative to an origin.
 pub struct Probe {
     corners: [Vec3; 3],
     /// Normals of the planes through the origin and an edge; edge k is opposite to corner k.
     edges: [Vec3; 3],
-    /// Bound of the error of the edge functions, for a direction of length 1.
-    error: f32,
     /// Of the triangle, not normalised.
     normal: Vec3,
     /// Of the triangle's plane over the origin, times the normal's length.
@@ -59,29 +67,23 @@ impl Probe {
         // (p + q) × (q - p) is 2 p × q, and cancels less where the triangle is far and small.
         let (sums, differences) = ([b + c, c + a, a + b], [c - b, a - c, b - a]);
         let edge = |k: usize| sums[k].cross(differences[k]);
-        let longest = |v: [Vec3; 3]| {
-            v[0].length_squared()
-                .max(v[1].length_squared())
-                .max(v[2].length_squared())
-        };
         let normal = differences[2].cross(c - a);
         Self {
             corners: [a, b, c],
             edges: [edge(0), edge(1), edge(2)],
-            error: ERROR * (longest(sums) * longest(differences)).sqrt(),
             normal,
             height: normal.dot(a),
         }
     }
 
-    /// Which segments cross the triangle between [`T_NEAR`] and [`T_FAR`].
+    /// Which segments cross the triangle between [`T_NEAR`] and [`T_FAR`]; `error` bounds the error of the
+    /// edge functions.
     #[inline(always)]
-    pub fn crossed<L: Lanes>(&self, direction: [L; 3], length: L) -> Verdict {
+    pub fn crossed<L: Lanes>(&self, direction: [L; 3], error: L) -> Verdict {
         let [a, b, c] = self.edges;
         let (u, v, w) = (dot(direction, a), dot(direction, b), dot(direction, c));
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-        let (error, minus_error) = (L::splat(self.error), L::splat(-self.error));
-        let (error, minus_error) = (length.mul(error), length.mul(minus_error));
+        let minus_error = L::splat(0.0).sub(error);
         let perhaps_inside = minus_error.le(least) | most.le(error);
         if perhaps_inside == 0 {
             return Verdict {

@@ -17,8 +17,8 @@ struct Avx2(__m256);
 #[derive(Clone, Copy)]
 struct Avx512(__m512);
 
-// SAFETY of all blocks below: they run inside of `occluded_avx2` only, see above; `load` checks the
-// length of the slice.
+// SAFETY of all blocks below: they run inside of `occluded_avx2` only, see above; `load` and `store`
+// check the length of the slice.
 impl Lanes for Avx2 {
     const WIDTH: usize = 8;
 
@@ -36,9 +36,22 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn store(self, values: &mut [f32]) {
+        let values = &mut values[..Self::WIDTH];
+        // SAFETY: see above.
+        unsafe { _mm256_storeu_ps(values.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         // SAFETY: see above.
         Self(unsafe { _mm256_add_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see above.
+        Self(unsafe { _mm256_sub_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -66,6 +79,22 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn inverse(self, least: f32) -> Self {
+        // SAFETY: see above.
+        Self(unsafe {
+            let least = _mm256_set1_ps(least);
+            _mm256_div_ps(
+                _mm256_set1_ps(1.0),
+                _mm256_blendv_ps(
+                    self.0,
+                    least,
+                    _mm256_cmp_ps::<_CMP_LT_OQ>(self.abs().0, least),
+                ),
+            )
+        })
+    }
+
+    #[inline(always)]
     fn with_sign_times(self, other: Self) -> Self {
         // SAFETY: see above.
         Self(unsafe { _mm256_xor_ps(self.0, _mm256_and_ps(_mm256_set1_ps(-0.0), other.0)) })
@@ -84,8 +113,8 @@ impl Lanes for Avx2 {
     }
 }
 
-// SAFETY of all blocks below: they run inside of `occluded_avx512` only, see above; `load` checks the
-// length of the slice.
+// SAFETY of all blocks below: they run inside of `occluded_avx512` only, see above; `load` and `store`
+// check the length of the slice.
 impl Lanes for Avx512 {
     const WIDTH: usize = 16;
 
@@ -103,9 +132,22 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
+    fn store(self, values: &mut [f32]) {
+        let values = &mut values[..Self::WIDTH];
+        // SAFETY: see above.
+        unsafe { _mm512_storeu_ps(values.as_mut_ptr(), self.0) }
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         // SAFETY: see above.
         Self(unsafe { _mm512_add_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see above.
+        Self(unsafe { _mm512_sub_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -130,6 +172,22 @@ impl Lanes for Avx512 {
     fn abs(self) -> Self {
         // SAFETY: see above.
         Self(unsafe { _mm512_abs_ps(self.0) })
+    }
+
+    #[inline(always)]
+    fn inverse(self, least: f32) -> Self {
+        // SAFETY: see above.
+        Self(unsafe {
+            let least = _mm512_set1_ps(least);
+            _mm512_div_ps(
+                _mm512_set1_ps(1.0),
+                _mm512_mask_mov_ps(
+                    self.0,
+                    _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.abs().0, least),
+                    least,
+                ),
+            )
+        })
     }
 
     #[inline(always)]
