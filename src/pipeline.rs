@@ -37,16 +37,24 @@ pub enum SolveError {
 
 /// Solves `scene`; `observer` hears of the progress and may stop it. The same settings on the same instruction set give the same
 /// solution, bit for bit, for any number of threads.
-pub fn solve(scene: &Scene, settings: &Settings, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+pub fn solve(
+    scene: &Scene,
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> Result<Solution, SolveError> {
     let started = Instant::now();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(settings.threads)
         .build()
-        .map_err(|e| SolveError::Threads { threads: settings.threads, reason: e.to_string() })?;
+        .map_err(|e| SolveError::Threads {
+            threads: settings.threads,
+            reason: e.to_string(),
+        })?;
     let threads = pool.current_num_threads();
     let mesh = Mesh::new(scene, settings.options.limits);
     let visibility = build(settings.engine, &occluders(scene, &mesh), threads)?;
-    let solver = pool.install(|| Solver::new(scene, mesh, visibility.as_ref(), settings.options.clone()));
+    let solver =
+        pool.install(|| Solver::new(scene, mesh, visibility.as_ref(), settings.options.clone()));
     let built = Instant::now();
     let outcome = pool.install(|| solver.run(observer));
     let engine = visibility.info();

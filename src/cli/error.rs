@@ -1,10 +1,10 @@
 //! What can go wrong, and the exit code it gives.
 
+use crate::SolveError;
 use crate::output::WriteError;
 use crate::scene::SceneError;
 use crate::solution::SolutionError;
 use crate::visibility::VisibilityError;
-use crate::SolveError;
 use std::process::ExitCode;
 use thiserror::Error;
 

@@ -108,7 +108,10 @@ impl SolveFlags {
             shooting: self.shooting.unwrap_or(preset.shooting),
             tolerance: or(self.tolerance, preset.tolerance),
             max_shots: self.max_shots.or(preset.max_shots),
-            time_limit: self.time_limit.map(Duration::from_secs_f64).or(preset.time_limit),
+            time_limit: self
+                .time_limit
+                .map(Duration::from_secs_f64)
+                .or(preset.time_limit),
         }
     }
 }
@@ -120,7 +123,11 @@ fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
 
 fn number(text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("expected {expected}"))?;
-    if value.is_finite() && allowed(value) { Ok(value) } else { Err(format!("expected {expected}")) }
+    if value.is_finite() && allowed(value) {
+        Ok(value)
+    } else {
+        Err(format!("expected {expected}"))
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

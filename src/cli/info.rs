@@ -33,13 +33,25 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
     line("polygons", summary.polygons.to_string());
     line(
         "surfaces",
-        format!("{} ({} triangles, {} quads), {} two-sided", summary.surfaces, summary.triangles, summary.quads, summary.two_sided),
+        format!(
+            "{} ({} triangles, {} quads), {} two-sided",
+            summary.surfaces, summary.triangles, summary.quads, summary.two_sided
+        ),
     );
     line("area", format!("{:.6} m²", summary.area));
     line("emitters", summary.emitters.to_string());
-    line("emitted power", format!("{:.6} W per channel", summary.emitted_power));
+    line(
+        "emitted power",
+        format!("{:.6} W per channel", summary.emitted_power),
+    );
     for camera in &scene.cameras {
-        line("camera", format!("{} {}x{} from {} to {}", camera.name, camera.width, camera.height, camera.eye, camera.look_at));
+        line(
+            "camera",
+            format!(
+                "{} {}x{} from {} to {}",
+                camera.name, camera.width, camera.height, camera.eye, camera.look_at
+            ),
+        );
     }
     for of in &summary.materials {
         let material = &of.material;
@@ -47,7 +59,11 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
             "material",
             format!(
                 "{} reflectance {:.3} radiance {:.3}: {} surfaces, {:.6} m²",
-                material.name, material.reflectance, material.emitted_radiance, of.surfaces, of.area
+                material.name,
+                material.reflectance,
+                material.emitted_radiance,
+                of.surfaces,
+                of.area
             ),
         );
     }

@@ -17,12 +17,29 @@ pub(super) fn draw(
     threads: usize,
     folder: &Path,
 ) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder).map_err(|e| CliError::System(format!("cannot make {}: {e}", folder.display())))?;
-    let view = View::new(lit, camera, options, |triangles| build(engine, &triangles, threads))?;
+    std::fs::create_dir_all(folder)
+        .map_err(|e| CliError::System(format!("cannot make {}: {e}", folder.display())))?;
+    let view = View::new(lit, camera, options, |triangles| {
+        build(engine, &triangles, threads)
+    })?;
     let radiance = view.radiance();
-    write_exr(&folder.join("shaded.exr"), radiance.width, radiance.height, &radiance.pixels)?;
-    for (name, picture) in [("shaded.png", view.shaded()), ("wireframe.png", view.wireframe()), ("mesh.png", view.mesh())] {
-        write_png(&folder.join(name), picture.width, picture.height, &picture.pixels)?;
+    write_exr(
+        &folder.join("shaded.exr"),
+        radiance.width,
+        radiance.height,
+        &radiance.pixels,
+    )?;
+    for (name, picture) in [
+        ("shaded.png", view.shaded()),
+        ("wireframe.png", view.wireframe()),
+        ("mesh.png", view.mesh()),
+    ] {
+        write_png(
+            &folder.join(name),
+            picture.width,
+            picture.height,
+            &picture.pixels,
+        )?;
     }
     Ok(())
 }

@@ -12,7 +12,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
-const LIGHT: [&str; 6] = ["radiosity_r", "radiosity_g", "radiosity_b", "irradiance_r", "irradiance_g", "irradiance_b"];
+const LIGHT: [&str; 6] = [
+    "radiosity_r",
+    "radiosity_g",
+    "radiosity_b",
+    "irradiance_r",
+    "irradiance_g",
+    "irradiance_b",
+];
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -30,7 +37,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let (table, missed) = probe_table(&solution, &arguments.points)?;
     match &arguments.output {
         Some(path) => write_atomically(path, |out| out.write_all(&table))?,
-        None => std::io::stdout().write_all(&table).map_err(|e| CliError::System(format!("cannot write: {e}")))?,
+        None => std::io::stdout()
+            .write_all(&table)
+            .map_err(|e| CliError::System(format!("cannot write: {e}")))?,
     }
     if missed > 0 {
         eprintln!("{missed} points lie on no surface that faces their way and were left empty");
@@ -40,14 +49,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
 
 /// The table of points with the light added, and how many points met no surface.
 fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), CliError> {
-    let unreadable = |e: csv::Error| CliError::Input(format!("cannot read {}: {e}", path.display()));
-    let mut reader = ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(path).map_err(unreadable)?;
+    let unreadable =
+        |e: csv::Error| CliError::Input(format!("cannot read {}: {e}", path.display()));
+    let mut reader = ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .map_err(unreadable)?;
     let header = reader.headers().map_err(unreadable)?.clone();
     let columns = place_columns(&header, path)?;
     let prober = Prober::new(solution);
     let mut writer = WriterBuilder::new().from_writer(Vec::new());
     let broken = |e: csv::Error| CliError::System(format!("cannot make the table: {e}"));
-    writer.write_record(header.iter().chain(LIGHT)).map_err(broken)?;
+    writer
+        .write_record(header.iter().chain(LIGHT))
+        .map_err(broken)?;
     let mut missed = 0;
     for record in reader.records() {
         let record = record.map_err(unreadable)?;
@@ -55,9 +71,13 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
         let light = prober.probe(point, normal);
         missed += usize::from(light.is_none());
         let cells = light.map_or_else(|| vec![String::new(); LIGHT.len()], |probe| cells(&probe));
-        writer.write_record(record.iter().map(str::to_owned).chain(cells)).map_err(broken)?;
+        writer
+            .write_record(record.iter().map(str::to_owned).chain(cells))
+            .map_err(broken)?;
     }
-    let table = writer.into_inner().map_err(|e| CliError::System(format!("cannot make the table: {e}")))?;
+    let table = writer
+        .into_inner()
+        .map_err(|e| CliError::System(format!("cannot make the table: {e}")))?;
     Ok((table, missed))
 }
 
@@ -65,10 +85,15 @@ fn place_columns(header: &StringRecord, path: &Path) -> Result<[usize; 6], CliEr
     let mut columns = [0; 6];
     for (column, name) in columns.iter_mut().zip(PLACE) {
         // A byte order mark stays with the first name.
-        let position = header.iter().position(|field| field.trim_start_matches('\u{feff}') == name);
+        let position = header
+            .iter()
+            .position(|field| field.trim_start_matches('\u{feff}') == name);
         *column = position.ok_or_else(|| {
             let found = header.iter().collect::<Vec<_>>().join(",");
-            CliError::Input(format!("{}:1: found the columns `{found}`, expected one named `{name}`", path.display()))
+            CliError::Input(format!(
+                "{}:1: found the columns `{found}`, expected one named `{name}`",
+                path.display()
+            ))
         })?;
     }
     Ok(columns)
@@ -80,8 +105,12 @@ fn place(record: &StringRecord, columns: &[usize; 6], path: &Path) -> Result<[DV
     for (number, (column, name)) in numbers.iter_mut().zip(columns.iter().zip(PLACE)) {
         let text = &record[*column];
         let parsed = text.parse::<f64>().ok().filter(|n| n.is_finite());
-        *number = parsed
-            .ok_or_else(|| CliError::Input(format!("{}:{line}: found `{text}` in column {name}, expected a number", path.display())))?;
+        *number = parsed.ok_or_else(|| {
+            CliError::Input(format!(
+                "{}:{line}: found `{text}` in column {name}, expected a number",
+                path.display()
+            ))
+        })?;
     }
     let [x, y, z, nx, ny, nz] = numbers;
     Ok([DVec3::new(x, y, z), DVec3::new(nx, ny, nz)])
@@ -89,5 +118,9 @@ fn place(record: &StringRecord, columns: &[usize; 6], path: &Path) -> Result<[DV
 
 fn cells(probe: &Probe) -> Vec<String> {
     let values = [probe.radiosity, probe.irradiance].map(|s| s.to_array());
-    values.iter().flatten().map(|value| value.to_string()).collect()
+    values
+        .iter()
+        .flatten()
+        .map(|value| value.to_string())
+        .collect()
 }

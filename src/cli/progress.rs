@@ -32,8 +32,12 @@ pub(super) struct Bar {
 impl Bar {
     /// A bar that is full when unshot over emitted power has fallen to `tolerance`; nothing is shown off a terminal.
     pub(super) fn new(tolerance: f64) -> Self {
-        let style = ProgressStyle::with_template("{bar:24} {elapsed} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
-        Self { bar: ProgressBar::new(STEPS).with_style(style), tolerance: tolerance.clamp(1e-9, 0.5) }
+        let style = ProgressStyle::with_template("{bar:24} {elapsed} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar());
+        Self {
+            bar: ProgressBar::new(STEPS).with_style(style),
+            tolerance: tolerance.clamp(1e-9, 0.5),
+        }
     }
 
     /// Takes the bar off the terminal.
@@ -55,6 +59,10 @@ impl Observer for Bar {
             now.shots + 1,
             HumanCount(now.elements as u64),
         ));
-        if INTERRUPTED.load(Ordering::SeqCst) { Control::Stop } else { Control::Continue }
+        if INTERRUPTED.load(Ordering::SeqCst) {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
     }
 }

@@ -52,22 +52,46 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let folder = arguments.output.as_ref().unwrap_or(&arguments.solution);
     let several = cameras.len() > 1;
     for (number, camera) in cameras.iter().enumerate() {
-        let into = if several && number > 0 { folder.join(&camera.name) } else { folder.clone() };
-        draw(&lit, camera, &RenderOptions::standard(), arguments.engine, 0, &into)?;
+        let into = if several && number > 0 {
+            folder.join(&camera.name)
+        } else {
+            folder.clone()
+        };
+        draw(
+            &lit,
+            camera,
+            &RenderOptions::standard(),
+            arguments.engine,
+            0,
+            &into,
+        )?;
     }
     Ok(Code::Success)
 }
 
 fn chosen(cameras: &[Camera], arguments: &Arguments) -> Result<Vec<Camera>, CliError> {
-    let named: Vec<&Camera> = cameras.iter().filter(|c| arguments.camera.as_ref().is_none_or(|name| *name == c.name)).collect();
+    let named: Vec<&Camera> = cameras
+        .iter()
+        .filter(|c| arguments.camera.as_ref().is_none_or(|name| *name == c.name))
+        .collect();
     if named.is_empty() {
-        let known = cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
+        let known = cameras
+            .iter()
+            .map(|c| c.name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ");
         let asked = arguments.camera.as_deref().unwrap_or_default();
-        return Err(CliError::Input(format!("no camera is named `{asked}`; there are: {known}")));
+        return Err(CliError::Input(format!(
+            "no camera is named `{asked}`; there are: {known}"
+        )));
     }
     // A view of one's own is one view.
     let own = arguments.eye.is_some() || arguments.look_at.is_some();
-    named.into_iter().take(if own { 1 } else { usize::MAX }).map(|camera| adjusted(camera, arguments)).collect()
+    named
+        .into_iter()
+        .take(if own { 1 } else { usize::MAX })
+        .map(|camera| adjusted(camera, arguments))
+        .collect()
 }
 
 fn adjusted(camera: &Camera, arguments: &Arguments) -> Result<Camera, CliError> {
@@ -82,10 +106,15 @@ fn adjusted(camera: &Camera, arguments: &Arguments) -> Result<Camera, CliError> 
     };
     let sight = adjusted.look_at - adjusted.eye;
     if !(adjusted.horizontal_fov > 0.0 && adjusted.horizontal_fov < 180.0) {
-        return Err(CliError::Input(format!("a field of view of {} degrees; expected one between 0 and 180", adjusted.horizontal_fov)));
+        return Err(CliError::Input(format!(
+            "a field of view of {} degrees; expected one between 0 and 180",
+            adjusted.horizontal_fov
+        )));
     }
     if sight.cross(adjusted.up).length() <= 1e-9 * sight.length() * adjusted.up.length() {
-        return Err(CliError::Input("the camera looks along its up direction, or at its own eye".into()));
+        return Err(CliError::Input(
+            "the camera looks along its up direction, or at its own eye".into(),
+        ));
     }
     Ok(adjusted)
 }

@@ -48,7 +48,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     warn(&scene);
     prepare(&arguments.output)?;
     catch_interrupts();
-    let settings = Settings { options: arguments.flags.options(), engine: arguments.engine, threads: arguments.threads };
+    let settings = Settings {
+        options: arguments.flags.options(),
+        engine: arguments.engine,
+        threads: arguments.threads,
+    };
     let mut bar = Bar::new(settings.options.tolerance);
     let mut solution = solve(&scene, &settings, &mut bar)?;
     bar.clear();
@@ -72,7 +76,9 @@ fn warn(scene: &Scene) {
 
 /// Makes the folder and finds out before the solve whether it can be written to.
 fn prepare(folder: &Path) -> Result<(), CliError> {
-    let refuse = |error: std::io::Error| CliError::System(format!("cannot write to {}: {error}", folder.display()));
+    let refuse = |error: std::io::Error| {
+        CliError::System(format!("cannot write to {}: {error}", folder.display()))
+    };
     std::fs::create_dir_all(folder).map_err(refuse)?;
     let probe = folder.join(".radiosity-writable");
     std::fs::write(&probe, []).map_err(refuse)?;
@@ -85,16 +91,30 @@ fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError>
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     let lit = solution.lit_mesh();
     let tone = Tone::for_mesh(&lit);
-    write_ply(&folder.join("solution.ply"), &lit, |v| tone.colour(radiance_from_radiosity(v.radiosity)))?;
+    write_ply(&folder.join("solution.ply"), &lit, |v| {
+        tone.colour(radiance_from_radiosity(v.radiosity))
+    })?;
     if !arguments.no_pictures {
         for (number, camera) in solution.cameras.iter().enumerate() {
             // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
-            let into = if number == 0 { folder.clone() } else { folder.join(&camera.name) };
-            draw(&lit, camera, &RenderOptions::standard(), arguments.engine, arguments.threads, &into)?;
+            let into = if number == 0 {
+                folder.clone()
+            } else {
+                folder.join(&camera.name)
+            };
+            draw(
+                &lit,
+                camera,
+                &RenderOptions::standard(),
+                arguments.engine,
+                arguments.threads,
+                &into,
+            )?;
         }
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
-    let report = serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
+    let report =
+        serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
     write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
     Ok(())
 }
@@ -112,7 +132,13 @@ fn summary(solution: &Solution, seconds: f64) -> String {
         seconds,
     };
     let power = &report.power;
-    let percent = |part: f64| if power.emitted > 0.0 { 100.0 * part / power.emitted } else { 0.0 };
+    let percent = |part: f64| {
+        if power.emitted > 0.0 {
+            100.0 * part / power.emitted
+        } else {
+            0.0
+        }
+    };
     let why = match report.stop_reason {
         StopReason::Converged => "converged",
         StopReason::MaxShots => "stopped at the largest number of shots",

@@ -25,9 +25,13 @@ mod tests {
     #[test]
     fn a_disk_on_the_axis_is_exact() {
         for (radius, height) in [(1.0, 1.0), (0.3, 2.0), (5.0, 0.1)] {
-            let computed = point_to_disk(DVec3::Z, DVec3::Z * height, -DVec3::Z, PI * radius * radius);
+            let computed =
+                point_to_disk(DVec3::Z, DVec3::Z * height, -DVec3::Z, PI * radius * radius);
             let exact = radius * radius / (height * height + radius * radius);
-            assert!((computed - exact).abs() < 1e-15, "r {radius} h {height}: {computed} {exact}");
+            assert!(
+                (computed - exact).abs() < 1e-15,
+                "r {radius} h {height}: {computed} {exact}"
+            );
         }
     }
 

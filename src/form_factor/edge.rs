@@ -7,15 +7,26 @@ use std::f64::consts::PI;
 /// With t = tan(θ/2) and s = t² = (1 - cos θ)/(1 + cos θ), θ/sin θ = (1 + s) · atan(√s)/√s. The last factor is a
 /// polynomial for s ≤ 1, interpolated at Chebyshev nodes; angles above 90° go through π - θ. Near θ = 0 the result is
 /// 1 + (1 - cos θ)/3 + …, so nothing cancels there as it does in `acos`.
-pub fn angle_over_sine(cosine: f64) -> f64 {
-    let c = cosine.abs().min(1.0);
-    let s = (1.0 - c) / (1.0 + c);
-    let acute = (1.0 + s) * atan_root_over_root(s);
-    if cosine >= 0.0 { acute } else { PI / ((1.0 - c) * (1.0 + c)).max(1e-30).sqrt() - acute }
+///
+/// Four angles at once, so that one polynomial's latency serves all sides of a quad.
+#[inline(always)]
+pub fn angles_over_sines(cosines: [f64; 4]) -> [f64; 4] {
+    let c = cosines.map(|cosine| cosine.abs().min(1.0));
+    let s = c.map(|c| (1.0 - c) / (1.0 + c));
+    let atan = atan_root_over_root(s);
+    let acute: [f64; 4] = std::array::from_fn(|i| (1.0 + s[i]) * atan[i]);
+    if cosines.iter().all(|cosine| *cosine >= 0.0) {
+        return acute;
+    }
+    std::array::from_fn(|i| {
+        let obtuse = PI / ((1.0 - c[i]) * (1.0 + c[i])).max(1e-30).sqrt() - acute[i];
+        if cosines[i] >= 0.0 { acute[i] } else { obtuse }
+    })
 }
 
 /// atan(√s)/√s on [0, 1].
-fn atan_root_over_root(s: f64) -> f64 {
+#[inline(always)]
+fn atan_root_over_root(s: [f64; 4]) -> [f64; 4] {
     const COEFFICIENTS: [f64; 13] = [
         0.8704197513671037,
         -0.10187654224951163,
@@ -31,13 +42,21 @@ fn atan_root_over_root(s: f64) -> f64 {
         -3.320596692183189e-07,
         1.0235203580963182e-07,
     ];
-    let x = 2.0 * s - 1.0;
-    COEFFICIENTS.iter().rev().fold(0.0, |sum, c| sum * x + c)
+    let x = s.map(|s| 2.0 * s - 1.0);
+    let mut sum = [COEFFICIENTS[12]; 4];
+    for coefficient in COEFFICIENTS[..12].iter().rev() {
+        sum = std::array::from_fn(|i| sum[i] * x[i] + coefficient);
+    }
+    sum
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn angle_over_sine(cosine: f64) -> f64 {
+        angles_over_sines([cosine, 1.0, -0.5, 0.0])[0]
+    }
 
     #[test]
     fn agrees_with_the_library_over_all_angles() {
@@ -46,7 +65,10 @@ mod tests {
             let exact = angle / angle.sin();
             let error = angle_over_sine(angle.cos()) / exact - 1.0;
             // Beside π the cosine itself has lost the angle: 1e-16 / sin² θ.
-            assert!(error.abs() < 3e-11 + 1e-15 / angle.sin().powi(2), "{angle}: {error:e}");
+            assert!(
+                error.abs() < 3e-11 + 1e-15 / angle.sin().powi(2),
+                "{angle}: {error:e}"
+            );
         }
         assert!((angle_over_sine(1.0) - 1.0).abs() < 2e-11);
         assert!(angle_over_sine(-1.0).is_finite());

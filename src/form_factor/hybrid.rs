@@ -1,7 +1,7 @@
 //! Which formula for which pair: the five-times rule.
 
 use super::disk::point_to_disk;
-use super::polygon::{point_to_polygon, point_to_visible_polygon};
+use super::polygon::{point_to_quad, point_to_visible_polygon};
 use super::source::Cell;
 use crate::geometry::polygon::{self, Clipped};
 use glam::DVec3;
@@ -13,6 +13,8 @@ pub struct Receiver {
     pub point: DVec3,
     /// Unit normal of the side that receives.
     pub normal: DVec3,
+    /// What it has received so far, largest channel: thresholds follow it.
+    pub irradiance: f32,
 }
 
 /// The formula for a pair of a point and a source cell.
@@ -33,18 +35,23 @@ pub struct Sight {
     pub form_factor: f64,
     /// Relative error that Eq. (1) may have here, to leading order; 0 for Eq. (2).
     pub uncertainty: f64,
-    /// What the horizon leaves of the cell, relative to the point, where it cuts it.
-    pub cut: Option<Clipped>,
+    /// Whether the horizon cuts the cell.
+    pub cut: bool,
 }
 
 impl Sight {
-    const NOTHING: Sight = Sight { form_factor: 0.0, uncertainty: 0.0, cut: None };
+    const NOTHING: Sight = Sight {
+        form_factor: 0.0,
+        uncertainty: 0.0,
+        cut: false,
+    };
 }
 
 impl Formula {
     /// The form factor from `receiver` to one cell of a source with unit normal `source_normal`.
     ///
     /// The largest projected width is taken for its bound that holds in every direction, the cell's diameter.
+    #[inline(always)]
     pub fn sight(self, receiver: Receiver, cell: &Cell, source_normal: DVec3) -> Sight {
         let to = cell.centroid - receiver.point;
         if source_normal.dot(to) >= 0.0 {
@@ -54,26 +61,47 @@ impl Formula {
         if height <= -cell.radius {
             return Sight::NOTHING;
         }
-        let relative = cell.corners().map(|corner| corner - receiver.point);
-        let relative = &relative[..cell.corner_count()];
-        let cut = height < cell.radius && relative.iter().any(|r| receiver.normal.dot(*r) < 0.0);
-        if cut && self != Formula::Disk {
-            let (form_factor, visible) = point_to_visible_polygon(receiver.normal, relative);
-            return Sight { form_factor, uncertainty: 0.0, cut: Some(visible) };
-        }
         let far = match self {
             Formula::Hybrid(factor) => to.length_squared() > (factor * cell.diameter).powi(2),
             Formula::Disk => true,
             Formula::Polygon => false,
         };
-        if far {
+        let cut = height < cell.radius && self != Formula::Disk && cut_by_horizon(receiver, cell);
+        if far && !cut {
             let form_factor = point_to_disk(receiver.normal, to, source_normal, cell.area);
             let uncertainty = cell.diameter * cell.diameter / to.length_squared();
-            return Sight { form_factor, uncertainty, cut: None };
+            return Sight {
+                form_factor,
+                uncertainty,
+                cut: false,
+            };
         }
-        let form_factor = point_to_polygon(receiver.normal, relative).max(0.0);
-        Sight { form_factor, uncertainty: 0.0, cut: None }
+        let corners = cell.corners().map(|corner| corner - receiver.point);
+        let form_factor = if cut {
+            point_to_visible_polygon(receiver.normal, &corners[..cell.corner_count()]).0
+        } else {
+            point_to_quad(receiver.normal, corners).max(0.0)
+        };
+        Sight {
+            form_factor,
+            uncertainty: 0.0,
+            cut,
+        }
     }
+}
+
+fn cut_by_horizon(receiver: Receiver, cell: &Cell) -> bool {
+    cell.corners()
+        .iter()
+        .any(|corner| receiver.normal.dot(*corner - receiver.point) < 0.0)
+}
+
+/// What the horizon leaves of a cell, relative to the receiver.
+pub fn above_horizon(receiver: Receiver, cell: &Cell) -> Clipped {
+    let corners = cell.corners().map(|corner| corner - receiver.point);
+    polygon::clip(&corners[..cell.corner_count()], |corner| {
+        receiver.normal.dot(corner)
+    })
 }
 
 /// The point at (s, t) in the unit square, mapped into what is left of a cell cut by the horizon.
@@ -81,6 +109,9 @@ pub fn point_in_cut(cut: &Clipped, s: f64, t: f64) -> DVec3 {
     let corners = cut.corners();
     let from = polygon::centroid(corners);
     let k = (s * corners.len() as f64) as usize % corners.len();
-    let along = corners[k].lerp(corners[(k + 1) % corners.len()], (s * corners.len() as f64).fract());
+    let along = corners[k].lerp(
+        corners[(k + 1) % corners.len()],
+        (s * corners.len() as f64).fract(),
+    );
     from.lerp(along, 0.9 * t.sqrt())
 }

@@ -14,5 +14,5 @@ mod source;
 pub use disk::point_to_disk;
 pub use hybrid::{Formula, Receiver};
 pub use polygon::{point_to_polygon, point_to_visible_polygon};
-pub use sampling::{Gather, Sampler, Scratch, SourceThresholds};
+pub use sampling::{Gather, Sampler, Scratch, SourceThresholds, ToleranceScale};
 pub use source::{Cell, DEEPEST, Source, SourceShape};

@@ -1,6 +1,6 @@
 //! Eq. (2): the exact form factor from a point to a polygon.
 
-use super::edge::angle_over_sine;
+use super::edge::angles_over_sines;
 use crate::geometry::polygon::{Clipped, clip};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -11,14 +11,42 @@ use std::f64::consts::PI;
 /// Positive where that side faces the point; the sign flips behind the polygon, where the true form factor is 0: see
 /// [`point_to_visible_polygon`]. An edge that runs through the point contributes 0, which is its limit.
 pub fn point_to_polygon(normal: DVec3, corners: &[DVec3]) -> f64 {
-    let unit = |r: DVec3| r / r.length_squared().max(f64::MIN_POSITIVE).sqrt();
+    // Triangles and quads go in one step; longer polygons are fans of quads from the first corner.
+    let first = corners[0];
     let mut sum = 0.0;
-    let mut from = unit(corners[corners.len() - 1]);
-    for &corner in corners {
-        let to = unit(corner);
-        sum += normal.dot(from.cross(to)) * angle_over_sine(from.dot(to));
-        from = to;
+    let mut rest = &corners[1..];
+    while rest.len() >= 2 {
+        let last = *rest.get(2).unwrap_or(&first);
+        sum += point_to_quad(normal, [first, rest[0], rest[1], last]);
+        rest = rest.get(2..).unwrap_or(&[]);
     }
+    sum
+}
+
+/// Eq. (2) for four corners; a triangle repeats one, whose edge then has no length and gives nothing.
+#[inline(always)]
+pub(super) fn point_to_quad(normal: DVec3, corners: [DVec3; 4]) -> f64 {
+    let x = corners.map(|r| r.x);
+    let y = corners.map(|r| r.y);
+    let z = corners.map(|r| r.z);
+    let square: [f64; 4] = std::array::from_fn(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    let scale = square.map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt());
+    let x: [f64; 4] = std::array::from_fn(|i| x[i] * scale[i]);
+    let y: [f64; 4] = std::array::from_fn(|i| y[i] * scale[i]);
+    let z: [f64; 4] = std::array::from_fn(|i| z[i] * scale[i]);
+    let next = |i: usize| (i + 1) % 4;
+    let cosines =
+        std::array::from_fn(|i| x[i] * x[next(i)] + y[i] * y[next(i)] + z[i] * z[next(i)]);
+    let heights: [f64; 4] = std::array::from_fn(|i| {
+        let j = next(i);
+        normal.x * (y[i] * z[j] - z[i] * y[j])
+            + normal.y * (z[i] * x[j] - x[i] * z[j])
+            + normal.z * (x[i] * y[j] - y[i] * x[j])
+    });
+    let angles = angles_over_sines(cosines);
+    let sum: f64 = std::array::from_fn::<f64, 4, _>(|i| heights[i] * angles[i])
+        .iter()
+        .sum();
     -sum / (2.0 * PI)
 }
 
@@ -29,5 +57,8 @@ pub fn point_to_visible_polygon(normal: DVec3, corners: &[DVec3]) -> (f64, Clipp
     if visible.corners().len() < 3 {
         return (0.0, visible);
     }
-    (point_to_polygon(normal, visible.corners()).max(0.0), visible)
+    (
+        point_to_polygon(normal, visible.corners()).max(0.0),
+        visible,
+    )
 }

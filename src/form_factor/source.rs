@@ -44,7 +44,11 @@ impl Cell {
         let count = shape.corners();
         let used = &corners[..count];
         let centroid = polygon::centroid(used);
-        let radius = used.iter().map(|c| c.distance_squared(centroid)).fold(0.0, f64::max).sqrt();
+        let radius = used
+            .iter()
+            .map(|c| c.distance_squared(centroid))
+            .fold(0.0, f64::max)
+            .sqrt();
         Self {
             corners,
             shape,
@@ -78,14 +82,22 @@ impl Cell {
         match self.shape {
             SourceShape::Quad => a.lerp(b, s).lerp(d.lerp(c, s), t),
             SourceShape::Triangle => {
-                let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
+                let (s, t) = if s + t > 1.0 {
+                    (1.0 - s, 1.0 - t)
+                } else {
+                    (s, t)
+                };
                 a + (b - a) * s + (c - a) * t
             }
         }
     }
 
     fn children(&self) -> [[DVec3; 4]; 4] {
-        self.shape.children(self.corners, |a, b| (a + b) * 0.5, |[a, b, c, d]| (a + b + c + d) * 0.25)
+        self.shape.children(
+            self.corners,
+            |a, b| (a + b) * 0.5,
+            |[a, b, c, d]| (a + b + c + d) * 0.25,
+        )
     }
 }
 
@@ -99,17 +111,37 @@ impl SourceShape {
     }
 
     /// The corners of the four parts, in the order in which the mesh numbers the children of an element.
-    fn children<P: Copy>(self, corners: [P; 4], midpoint: impl Fn(P, P) -> P, centre: impl Fn([P; 4]) -> P) -> [[P; 4]; 4] {
+    fn children<P: Copy>(
+        self,
+        corners: [P; 4],
+        midpoint: impl Fn(P, P) -> P,
+        centre: impl Fn([P; 4]) -> P,
+    ) -> [[P; 4]; 4] {
         let [a, b, c, d] = corners;
         match self {
             SourceShape::Quad => {
-                let (ab, bc, cd, da) = (midpoint(a, b), midpoint(b, c), midpoint(c, d), midpoint(d, a));
+                let (ab, bc, cd, da) = (
+                    midpoint(a, b),
+                    midpoint(b, c),
+                    midpoint(c, d),
+                    midpoint(d, a),
+                );
                 let m = centre(corners);
-                [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]]
+                [
+                    [a, ab, m, da],
+                    [ab, b, bc, m],
+                    [m, bc, c, cd],
+                    [da, m, cd, d],
+                ]
             }
             SourceShape::Triangle => {
                 let (ab, bc, ca) = (midpoint(a, b), midpoint(b, c), midpoint(c, a));
-                [[a, ab, ca, a], [ab, b, bc, ab], [ca, bc, c, ca], [bc, ca, ab, bc]]
+                [
+                    [a, ab, ca, a],
+                    [ab, b, bc, ab],
+                    [ca, bc, c, ca],
+                    [bc, ca, ab, bc],
+                ]
             }
         }
     }
@@ -131,8 +163,17 @@ impl Source {
     /// cell has the area-weighted mean of its children, so that the power is the same on every level.
     pub fn new(corners: &[DVec3], normal: DVec3, levels: u32, finest: &[Spectrum]) -> Self {
         assert!((1..=DEEPEST).contains(&levels) && finest.len() == 1 << (2 * levels));
-        let shape = if corners.len() == 3 { SourceShape::Triangle } else { SourceShape::Quad };
-        let root = [corners[0], corners[1], corners[2], *corners.get(3).unwrap_or(&corners[0])];
+        let shape = if corners.len() == 3 {
+            SourceShape::Triangle
+        } else {
+            SourceShape::Quad
+        };
+        let root = [
+            corners[0],
+            corners[1],
+            corners[2],
+            *corners.get(3).unwrap_or(&corners[0]),
+        ];
         let mut cells = vec![Cell::new(root, shape)];
         for parent in 0..level_start(levels) {
             for child in cells[parent].children() {
@@ -146,12 +187,24 @@ impl Source {
             let children = &cells[4 * parent + 1..4 * parent + 5];
             let area: f64 = children.iter().map(|c| c.area).sum();
             let power: Spectrum = children.iter().map(|c| c.radiosity * c.area as f32).sum();
-            let mean = if area > 0.0 { power / area as f32 } else { Spectrum::ZERO };
-            let variation = children.iter().map(|c| (c.radiosity - mean).abs().max_element()).fold(0.0, f32::max);
+            let mean = if area > 0.0 {
+                power / area as f32
+            } else {
+                Spectrum::ZERO
+            };
+            let variation = children
+                .iter()
+                .map(|c| (c.radiosity - mean).abs().max_element())
+                .fold(0.0, f32::max);
             cells[parent].radiosity = mean;
             cells[parent].variation = variation;
         }
-        Self { shape, normal, levels, cells }
+        Self {
+            shape,
+            normal,
+            levels,
+            cells,
+        }
     }
 
     /// Unit normal of the radiating side.
@@ -171,7 +224,9 @@ impl Source {
 
     /// The cells of the deepest level with their radiosity times area, for drawing points in proportion to it.
     pub fn finest(&self) -> impl ExactSizeIterator<Item = (&Cell, Spectrum)> {
-        self.cells[level_start(self.levels)..].iter().map(|c| (c, c.radiosity * c.area as f32))
+        self.cells[level_start(self.levels)..]
+            .iter()
+            .map(|c| (c, c.radiosity * c.area as f32))
     }
 
     pub(super) fn cell(&self, index: CellIndex) -> &Cell {
@@ -215,14 +270,15 @@ impl Source {
     }
 }
 
-
 /// Number of the first cell of a level.
 const fn level_start(level: u32) -> usize {
     ((1usize << (2 * level)) - 1) / 3
 }
 
-static TRIANGLE_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> = LazyLock::new(|| neighbour_table(SourceShape::Triangle));
-static QUAD_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> = LazyLock::new(|| neighbour_table(SourceShape::Quad));
+static TRIANGLE_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> =
+    LazyLock::new(|| neighbour_table(SourceShape::Triangle));
+static QUAD_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> =
+    LazyLock::new(|| neighbour_table(SourceShape::Quad));
 
 /// Finds who shares a side with whom by subdividing a lattice of integers.
 fn neighbour_table(shape: SourceShape) -> Vec<[Option<CellIndex>; 4]> {
@@ -240,7 +296,10 @@ fn neighbour_table(shape: SourceShape) -> Vec<[Option<CellIndex>; 4]> {
         let mut open: HashMap<([i32; 2], [i32; 2]), (usize, usize)> = HashMap::new();
         for cell in level_start(level)..level_start(level + 1) {
             for side in 0..shape.corners() {
-                let (a, b) = (corners[cell][side], corners[cell][(side + 1) % shape.corners()]);
+                let (a, b) = (
+                    corners[cell][side],
+                    corners[cell][(side + 1) % shape.corners()],
+                );
                 if let Some((other, other_side)) = open.insert((a.min(b), a.max(b)), (cell, side)) {
                     table[cell][side] = Some(other as CellIndex);
                     table[other][other_side] = Some(cell as CellIndex);
@@ -263,12 +322,17 @@ mod tests {
     fn every_level_covers_the_patch_and_carries_its_power() {
         for count in [3, 4] {
             let corners = &square()[..count];
-            let finest: Vec<Spectrum> = (0..256).map(|i| Spectrum::new(i as f32, 1.0, 0.5)).collect();
+            let finest: Vec<Spectrum> = (0..256)
+                .map(|i| Spectrum::new(i as f32, 1.0, 0.5))
+                .collect();
             let source = Source::new(corners, DVec3::Z, 4, &finest);
             for level in 0..=4 {
                 let cells = &source.cells[level_start(level)..level_start(level + 1)];
                 let area: f64 = cells.iter().map(|c| c.area).sum();
-                let power: f64 = cells.iter().map(|c| f64::from(c.radiosity.x) * c.area).sum();
+                let power: f64 = cells
+                    .iter()
+                    .map(|c| f64::from(c.radiosity.x) * c.area)
+                    .sum();
                 assert!((area - source.area()).abs() < 1e-14);
                 assert!((power / area - 127.5).abs() < 1e-3, "{power}");
             }
@@ -277,7 +341,10 @@ mod tests {
 
     #[test]
     fn neighbours_share_a_side() {
-        for (shape, inner_sides) in [(SourceShape::Quad, 2 * (2 * 32 * 31)), (SourceShape::Triangle, 3 * 1024 - 3 * 32)] {
+        for (shape, inner_sides) in [
+            (SourceShape::Quad, 2 * (2 * 32 * 31)),
+            (SourceShape::Triangle, 3 * 1024 - 3 * 32),
+        ] {
             let table = neighbour_table(shape);
             let last = &table[level_start(DEEPEST)..];
             let linked: usize = last.iter().flatten().flatten().count();

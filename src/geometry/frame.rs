@@ -16,17 +16,30 @@ pub struct Frame {
 impl Frame {
     /// The frame of a set of finite points; one point, or none, gives an extent of 64.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
-        let (low, high) = points.into_iter().fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), p| (low.min(p), high.max(p)),
-        );
+        let (low, high) = points
+            .into_iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+                (low.min(p), high.max(p))
+            });
         if low.x > high.x {
-            return Self { centre: DVec3::ZERO, scale: 1.0, extent: 64.0 };
+            return Self {
+                centre: DVec3::ZERO,
+                scale: 1.0,
+                extent: 64.0,
+            };
         }
         let longest = (high - low).max_element();
-        let scale = if longest > 0.0 { (6.0 - longest.log2().floor()).exp2() } else { 1.0 };
+        let scale = if longest > 0.0 {
+            (6.0 - longest.log2().floor()).exp2()
+        } else {
+            1.0
+        };
         let extent = if longest > 0.0 { longest * scale } else { 64.0 };
-        Self { centre: low + (high - low) * 0.5, scale, extent }
+        Self {
+            centre: low + (high - low) * 0.5,
+            scale,
+            extent,
+        }
     }
 
     /// The longest side of the scene's bounding box, in frame units.
@@ -56,10 +69,19 @@ mod tests {
 
     #[test]
     fn size_and_place_do_not_matter() {
-        let box_at = |size: f64, at: DVec3| Frame::of([at, at + DVec3::new(size, 0.5 * size, 0.1 * size)]);
-        for (size, at) in [(1e-6, DVec3::ZERO), (1.0, DVec3::splat(1e6)), (3e7, DVec3::new(-1e9, 0.0, 5.0))] {
+        let box_at =
+            |size: f64, at: DVec3| Frame::of([at, at + DVec3::new(size, 0.5 * size, 0.1 * size)]);
+        for (size, at) in [
+            (1e-6, DVec3::ZERO),
+            (1.0, DVec3::splat(1e6)),
+            (3e7, DVec3::new(-1e9, 0.0, 5.0)),
+        ] {
             let frame = box_at(size, at);
-            assert!((64.0..128.0001).contains(&frame.extent()), "{}", frame.extent());
+            assert!(
+                (64.0..128.0001).contains(&frame.extent()),
+                "{}",
+                frame.extent()
+            );
             let p = at + DVec3::splat(0.05 * size);
             assert!(frame.leave(frame.enter(p)).distance(p) <= 1e-15 * (at.length() + size));
         }

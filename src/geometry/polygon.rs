@@ -6,7 +6,9 @@ use glam::DVec3;
 pub fn vector_area(corners: &[DVec3]) -> DVec3 {
     let origin = corners[0];
     let fan = corners.windows(2).skip(1);
-    fan.map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
+    fan.map(|w| (w[0] - origin).cross(w[1] - origin))
+        .sum::<DVec3>()
+        * 0.5
 }
 
 /// Centre of mass of a convex polygon; the mean of the corners where there is no area.
@@ -62,7 +64,10 @@ impl Clipped {
 /// The part of a convex polygon (three or four corners) where `height` ≥ 0, for a linear function `height`.
 pub fn clip(corners: &[DVec3], height: impl Fn(DVec3) -> f64) -> Clipped {
     debug_assert!(corners.len() < Clipped::MOST);
-    let mut kept = Clipped { corners: [DVec3::ZERO; Clipped::MOST], len: 0 };
+    let mut kept = Clipped {
+        corners: [DVec3::ZERO; Clipped::MOST],
+        len: 0,
+    };
     for (i, &a) in corners.iter().enumerate() {
         let b = corners[(i + 1) % corners.len()];
         let (ha, hb) = (height(a), height(b));
@@ -93,7 +98,11 @@ mod tests {
     fn clipping_keeps_the_area_above_the_line() {
         for (offset, area) in [(-2.0, 1.0), (0.25, 0.75), (1.0, 0.0), (3.0, 0.0)] {
             let kept = clip(&UNIT, |p| p.x - offset);
-            let left = if kept.corners().len() < 3 { 0.0 } else { vector_area(kept.corners()).z };
+            let left = if kept.corners().len() < 3 {
+                0.0
+            } else {
+                vector_area(kept.corners()).z
+            };
             assert!((left - area).abs() < 1e-15, "x ≥ {offset}: {left}");
         }
         let corner_cut = clip(&UNIT, |p| 1.5 - p.x - p.y);

@@ -21,7 +21,13 @@ impl Mesh {
     /// The coarsest mesh: a patch for each radiating side, a grid of nearly square elements on each quad patch, one
     /// element on each triangle, split until `limits.initial_size` holds.
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
-        let frame = Frame::of(scene.surfaces.iter().flat_map(|s| s.corners.indices()).map(|v| scene.vertices[*v as usize]));
+        let frame = Frame::of(
+            scene
+                .surfaces
+                .iter()
+                .flat_map(|s| s.corners.indices())
+                .map(|v| scene.vertices[*v as usize]),
+        );
         let mut mesh = Self {
             frame,
             patches: Vec::new(),
@@ -37,7 +43,12 @@ impl Mesh {
         let cuts = cuts(scene);
         for (number, surface) in scene.surfaces.iter().enumerate() {
             let outline = outline(surface, &cuts);
-            let mut corners: Vec<DVec3> = surface.corners.indices().iter().map(|v| frame.enter(scene.vertices[*v as usize])).collect();
+            let mut corners: Vec<DVec3> = surface
+                .corners
+                .indices()
+                .iter()
+                .map(|v| frame.enter(scene.vertices[*v as usize]))
+                .collect();
             let material = &scene.materials[surface.material as usize];
             let mut front = Patch::new(number as u32, surface.polygon, &corners, false);
             front.outline = outline;
@@ -69,7 +80,14 @@ impl Mesh {
         let (columns, rows) = patch.grid;
         self.patches.push(patch);
         if self.patches[id as usize].is_triangle() {
-            self.add_root(id, &[Lattice::new(0, 0), Lattice::new(UNIT, 0), Lattice::new(0, UNIT)]);
+            self.add_root(
+                id,
+                &[
+                    Lattice::new(0, 0),
+                    Lattice::new(UNIT, 0),
+                    Lattice::new(0, UNIT),
+                ],
+            );
         } else {
             let (du, dv) = (UNIT / columns, UNIT / rows);
             for row in 0..rows {
@@ -86,8 +104,14 @@ impl Mesh {
     fn add_root(&mut self, patch: u32, corners: &[Lattice]) {
         let centre = centre_of(corners);
         let centre_position = self.patches[patch as usize].position(centre);
-        let mut element =
-            Element { patch, corners: [NONE; 4], centre: NONE, hanging: [NONE; 4], children: NONE, level: 0 };
+        let mut element = Element {
+            patch,
+            corners: [NONE; 4],
+            centre: NONE,
+            hanging: [NONE; 4],
+            children: NONE,
+            level: 0,
+        };
         for (slot, corner) in element.corners.iter_mut().zip(corners) {
             *slot = self.vertex(patch, *corner, centre_position);
         }
@@ -150,7 +174,8 @@ fn reversed(outline: [bool; 4], count: usize) -> [bool; 4] {
 /// The middle of an element: the bilinear centre of a quad, the centroid of a triangle.
 pub(super) fn centre_of(corners: &[Lattice]) -> Lattice {
     if let [a, b, c] = corners {
-        let third = |a: u32, b: u32, c: u32| ((u64::from(a) + u64::from(b) + u64::from(c)) / 3) as u32;
+        let third =
+            |a: u32, b: u32, c: u32| ((u64::from(a) + u64::from(b) + u64::from(c)) / 3) as u32;
         Lattice::new(third(a.u, b.u, c.u), third(a.v, b.v, c.v))
     } else {
         corners[0].midpoint(corners[2])
@@ -159,7 +184,9 @@ pub(super) fn centre_of(corners: &[Lattice]) -> Lattice {
 
 /// A grid whose cells are between 1 : √2 and √2 : 1, of powers of two.
 fn grid_of(patch: &Patch) -> (u32, u32) {
-    let &[a, b, c, d] = patch.corners() else { return (1, 1) };
+    let &[a, b, c, d] = patch.corners() else {
+        return (1, 1);
+    };
     let width = a.distance(b).max(c.distance(d));
     let height = b.distance(c).max(d.distance(a));
     let steps = (width / height).log2().round().clamp(-10.0, 10.0) as i32;

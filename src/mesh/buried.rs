@@ -51,18 +51,27 @@ impl Mesh {
         }
         edges.sort_unstable();
         edges.dedup();
-        let mut ring: Vec<u32> = self.buried.iter().map(|buried| if *buried { NONE } else { 0 }).collect();
+        let mut ring: Vec<u32> = self
+            .buried
+            .iter()
+            .map(|buried| if *buried { NONE } else { 0 })
+            .collect();
         for current in 1.. {
             let before = self.continuation.steps.len();
             for group in edges.chunk_by(|a, b| a.0 == b.0) {
                 let vertex = group[0].0;
                 if ring[vertex as usize] == NONE {
-                    let known = group.iter().map(|(_, other)| *other).filter(|other| ring[*other as usize] < current);
+                    let known = group
+                        .iter()
+                        .map(|(_, other)| *other)
+                        .filter(|other| ring[*other as usize] < current);
                     let count = self.continuation.sources.len();
                     self.continuation.sources.extend(known);
                     if self.continuation.sources.len() > count {
                         ring[vertex as usize] = current;
-                        self.continuation.steps.push((vertex, self.continuation.sources.len() as u32));
+                        self.continuation
+                            .steps
+                            .push((vertex, self.continuation.sources.len() as u32));
                     }
                 }
             }

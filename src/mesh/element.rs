@@ -28,7 +28,11 @@ impl Element {
 
     /// Its three or four corner vertices.
     pub fn corners(&self) -> &[u32] {
-        if self.corners[3] == NONE { &self.corners[..3] } else { &self.corners }
+        if self.corners[3] == NONE {
+            &self.corners[..3]
+        } else {
+            &self.corners
+        }
     }
 
     /// Its sides: number, first vertex, second vertex.

@@ -12,8 +12,16 @@ impl Mesh {
         let of = self.elements[element as usize];
         let count = of.corners().len();
         (0..count).flat_map(move |side| {
-            let (a, b, middle) = (of.corners[side], of.corners[(side + 1) % count], of.hanging[side]);
-            let (first, second) = if middle == NONE { (b, None) } else { (middle, Some([of.centre, middle, b])) };
+            let (a, b, middle) = (
+                of.corners[side],
+                of.corners[(side + 1) % count],
+                of.hanging[side],
+            );
+            let (first, second) = if middle == NONE {
+                (b, None)
+            } else {
+                (middle, Some([of.centre, middle, b]))
+            };
             std::iter::once([of.centre, a, first]).chain(second)
         })
     }
@@ -46,7 +54,11 @@ impl Mesh {
             }
         } else {
             // Barycentric coordinates in the element; sizes are signed in the middle children.
-            let (a, b, c) = (lattice(of.corners[0]), lattice(of.corners[1]), lattice(of.corners[2]));
+            let (a, b, c) = (
+                lattice(of.corners[0]),
+                lattice(of.corners[1]),
+                lattice(of.corners[2]),
+            );
             let difference = |p: u32, q: u32| f64::from(p) - f64::from(q);
             let (bu, bv) = (difference(b.u, a.u), difference(b.v, a.v));
             let (cu, cv) = (difference(c.u, a.u), difference(c.v, a.v));
@@ -67,8 +79,19 @@ impl Mesh {
     /// Longest extent of an element in (u, v), where the patch is 1.
     pub fn unit_side(&self, element: u32) -> f64 {
         let lattice = |v: u32| self.vertices[v as usize].lattice;
-        let step = |(_, a, b): (usize, u32, u32)| lattice(a).u.abs_diff(lattice(b).u).max(lattice(a).v.abs_diff(lattice(b).v));
-        f64::from(self.elements[element as usize].sides().map(step).max().unwrap_or(0)) / f64::from(UNIT)
+        let step = |(_, a, b): (usize, u32, u32)| {
+            lattice(a)
+                .u
+                .abs_diff(lattice(b).u)
+                .max(lattice(a).v.abs_diff(lattice(b).v))
+        };
+        f64::from(
+            self.elements[element as usize]
+                .sides()
+                .map(step)
+                .max()
+                .unwrap_or(0),
+        ) / f64::from(UNIT)
     }
 
     /// The fan triangle of a leaf that covers a point of its plane, with barycentric weights; a point a hair outside
@@ -96,6 +119,9 @@ impl Mesh {
     /// The leaf and weights at a lattice point of a patch.
     pub fn interpolate_at(&self, patch: u32, lattice: Lattice) -> [Weighted; 3] {
         let (u, v) = lattice.unit();
-        self.interpolate(self.leaf_at(patch, u, v), self.patches[patch as usize].position(lattice))
+        self.interpolate(
+            self.leaf_at(patch, u, v),
+            self.patches[patch as usize].position(lattice),
+        )
     }
 }

@@ -6,7 +6,9 @@ pub const UNIT: u32 = 3 << 28;
 
 /// A point of a patch: (u, v) in steps of 1/[`UNIT`]. On a quad, the bilinear coordinates of its four corners; on a triangle
 /// a, b, c the weights of b and c.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub struct Lattice {
     /// Along the first side.
     pub u: u32,
@@ -27,6 +29,9 @@ impl Lattice {
 
     /// The coordinates in [0, 1].
     pub fn unit(self) -> (f64, f64) {
-        (f64::from(self.u) / f64::from(UNIT), f64::from(self.v) / f64::from(UNIT))
+        (
+            f64::from(self.u) / f64::from(UNIT),
+            f64::from(self.v) / f64::from(UNIT),
+        )
     }
 }

@@ -82,6 +82,10 @@ impl Mesh {
 
     /// The deepest level of any element.
     pub fn depth(&self) -> u32 {
-        self.elements.iter().map(|e| u32::from(e.level)).max().unwrap_or(0)
+        self.elements
+            .iter()
+            .map(|e| u32::from(e.level))
+            .max()
+            .unwrap_or(0)
     }
 }

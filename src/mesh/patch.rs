@@ -42,7 +42,12 @@ impl Patch {
         Self {
             surface,
             polygon,
-            corners: [corners[0], corners[1], corners[2], *corners.get(3).unwrap_or(&corners[0])],
+            corners: [
+                corners[0],
+                corners[1],
+                corners[2],
+                *corners.get(3).unwrap_or(&corners[0]),
+            ],
             corner_count: corners.len() as u8,
             outline: [true; 4],
             back,
@@ -114,7 +119,11 @@ impl Patch {
     /// Whether a lattice point lies on the border.
     pub fn on_border(&self, lattice: Lattice) -> bool {
         let Lattice { u, v } = lattice;
-        if self.is_triangle() { u == 0 || v == 0 || u + v == UNIT } else { u == 0 || v == 0 || u == UNIT || v == UNIT }
+        if self.is_triangle() {
+            u == 0 || v == 0 || u + v == UNIT
+        } else {
+            u == 0 || v == 0 || u == UNIT || v == UNIT
+        }
     }
 
     /// The side of the patch on which two lattice points lie, if they lie on one.
@@ -125,7 +134,11 @@ impl Patch {
         if low(v) {
             Some(0)
         } else if self.is_triangle() {
-            if high(sum) { Some(1) } else { low(u).then_some(2) }
+            if high(sum) {
+                Some(1)
+            } else {
+                low(u).then_some(2)
+            }
         } else if high(u) {
             Some(1)
         } else if high(v) {

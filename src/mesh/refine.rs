@@ -11,14 +11,17 @@ impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
         let sides = self.elements[element as usize].sides();
-        sides.map(|(_, a, b)| self.position(a).distance(self.position(b))).fold(0.0, f64::max)
+        sides
+            .map(|(_, a, b)| self.position(a).distance(self.position(b)))
+            .fold(0.0, f64::max)
     }
 
     /// Whether the limits allow an element to be split.
     pub fn may_split(&self, element: u32) -> bool {
         let level = u32::from(self.elements[element as usize].level);
         // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
-        level < self.limits.max_depth.min(17) && self.longest_side(element) > self.limits.min_size * self.frame.extent()
+        level < self.limits.max_depth.min(17)
+            && self.longest_side(element) > self.limits.min_size * self.frame.extent()
     }
 
     /// Splits a leaf into four; returns the first child.
@@ -32,18 +35,33 @@ impl Mesh {
         let count = parent.corners().len();
         if count == 3 {
             let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
-            children = [[a, ab, ca, a], [ab, b, bc, a], [ca, bc, c, a], [bc, ca, ab, a]];
+            children = [
+                [a, ab, ca, a],
+                [ab, b, bc, a],
+                [ca, bc, c, a],
+                [bc, ca, ab, a],
+            ];
         } else {
             let d = at(self, parent.corners[3]);
             let m = at(self, parent.centre);
             let (ab, bc, cd, da) = (a.midpoint(b), b.midpoint(c), c.midpoint(d), d.midpoint(a));
-            children = [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]];
+            children = [
+                [a, ab, m, da],
+                [ab, b, bc, m],
+                [m, bc, c, cd],
+                [da, m, cd, d],
+            ];
         }
         for corners in &mut children {
             let corners = &corners[..count];
             let centre = centre_of(corners);
             let centre_position = self.patches[parent.patch as usize].position(centre);
-            let mut child = Element { corners: [NONE; 4], level: parent.level + 1, hanging: [NONE; 4], ..parent };
+            let mut child = Element {
+                corners: [NONE; 4],
+                level: parent.level + 1,
+                hanging: [NONE; 4],
+                ..parent
+            };
             for (slot, corner) in child.corners.iter_mut().zip(corners) {
                 *slot = self.vertex(parent.patch, *corner, centre_position);
             }
@@ -61,10 +79,18 @@ impl Mesh {
         }
         let owner = &mut self.patches[patch as usize];
         let position = owner.position(lattice);
-        let point = if owner.on_border(lattice) { position.lerp(inside, INWARDS) } else { position };
+        let point = if owner.on_border(lattice) {
+            position.lerp(inside, INWARDS)
+        } else {
+            position
+        };
         let vertex = self.vertices.len() as u32;
         owner.vertices.push(vertex);
-        self.vertices.push(Vertex { patch, lattice, point });
+        self.vertices.push(Vertex {
+            patch,
+            lattice,
+            point,
+        });
         self.at.insert((patch, lattice), vertex);
         vertex
     }
@@ -72,15 +98,23 @@ impl Mesh {
     /// The leaves among `candidates` and all others that must be split so that neighbours differ by at most one level: those
     /// with a vertex at a quarter of a side.
     pub fn unbalanced(&self) -> Vec<u32> {
-        self.leaves().filter(|e| self.has_quarter_vertex(&self.elements[*e as usize])).collect()
+        self.leaves()
+            .filter(|e| self.has_quarter_vertex(&self.elements[*e as usize]))
+            .collect()
     }
 
     fn has_quarter_vertex(&self, element: &Element) -> bool {
         element.sides().any(|(_, a, b)| {
-            let (a, b) = (self.vertices[a as usize].lattice, self.vertices[b as usize].lattice);
+            let (a, b) = (
+                self.vertices[a as usize].lattice,
+                self.vertices[b as usize].lattice,
+            );
             let middle = a.midpoint(b);
             self.vertex_at(element.patch, middle).is_some()
-                && [a, b].iter().any(|end| self.vertex_at(element.patch, end.midpoint(middle)).is_some())
+                && [a, b].iter().any(|end| {
+                    self.vertex_at(element.patch, end.midpoint(middle))
+                        .is_some()
+                })
         })
     }
 
@@ -91,7 +125,9 @@ impl Mesh {
             if of.is_leaf() {
                 let mut hanging = [NONE; 4];
                 for (side, a, b) in of.sides() {
-                    let middle = self.vertices[a as usize].lattice.midpoint(self.vertices[b as usize].lattice);
+                    let middle = self.vertices[a as usize]
+                        .lattice
+                        .midpoint(self.vertices[b as usize].lattice);
                     hanging[side] = self.vertex_at(of.patch, middle).unwrap_or(NONE);
                 }
                 self.elements[element].hanging = hanging;
@@ -104,7 +140,9 @@ impl Mesh {
                 for triangle in self.fan(element) {
                     let [a, b, c] = triangle.map(|v| self.position(v));
                     let third = (b - a).cross(c - a).length() / 6.0;
-                    triangle.iter().for_each(|v| self.full_weights[*v as usize] += third);
+                    triangle
+                        .iter()
+                        .for_each(|v| self.full_weights[*v as usize] += third);
                 }
             }
         }
@@ -116,7 +154,12 @@ impl Mesh {
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);
         self.buried.resize(self.vertices.len(), false);
-        self.weights = self.full_weights.iter().zip(&self.buried).map(|(w, buried)| if *buried { 0.0 } else { *w }).collect();
+        self.weights = self
+            .full_weights
+            .iter()
+            .zip(&self.buried)
+            .map(|(w, buried)| if *buried { 0.0 } else { *w })
+            .collect();
         self.plan_continuation();
     }
 }

@@ -5,24 +5,60 @@ use super::{Mesh, NONE};
 impl Mesh {
     /// Checks a mesh that was read and restores what is not stored. Errors say what does not fit.
     pub fn restore(&mut self) -> Result<(), String> {
-        let (patches, elements, vertices) = (self.patches.len(), self.elements.len(), self.vertices.len());
-        let check = |holds: bool, what: &str| if holds { Ok(()) } else { Err(format!("{what} out of range")) };
+        let (patches, elements, vertices) =
+            (self.patches.len(), self.elements.len(), self.vertices.len());
+        let check = |holds: bool, what: &str| {
+            if holds {
+                Ok(())
+            } else {
+                Err(format!("{what} out of range"))
+            }
+        };
         for patch in &self.patches {
-            check(patch.roots.start <= patch.roots.end && patch.roots.end as usize <= elements, "a root element")?;
+            check(
+                patch.roots.start <= patch.roots.end && patch.roots.end as usize <= elements,
+                "a root element",
+            )?;
             let roots = patch.grid.0.checked_mul(patch.grid.1);
-            check(roots.is_some_and(|n| n > 0 && n == patch.roots.end - patch.roots.start), "a grid")?;
-            check(patch.vertices.iter().all(|v| (*v as usize) < vertices), "a vertex of a patch")?;
+            check(
+                roots.is_some_and(|n| n > 0 && n == patch.roots.end - patch.roots.start),
+                "a grid",
+            )?;
+            check(
+                patch.vertices.iter().all(|v| (*v as usize) < vertices),
+                "a vertex of a patch",
+            )?;
         }
         for (number, element) in self.elements.iter().enumerate() {
-            check((element.patch as usize) < patches, "the patch of an element")?;
+            check(
+                (element.patch as usize) < patches,
+                "the patch of an element",
+            )?;
             let within = |v: &u32| (*v as usize) < vertices;
-            check(element.corners().iter().all(within) && within(&element.centre), "a corner of an element")?;
+            check(
+                element.corners().iter().all(within) && within(&element.centre),
+                "a corner of an element",
+            )?;
             let children = element.children as usize;
-            check(element.is_leaf() || (children > number && children + 4 <= elements), "the children of an element")?;
+            check(
+                element.is_leaf() || (children > number && children + 4 <= elements),
+                "the children of an element",
+            )?;
         }
-        check(self.vertices.iter().all(|v| (v.patch as usize) < patches), "the patch of a vertex")?;
-        check(self.buried.len() == vertices, "the number of buried vertices")?;
-        self.at = self.vertices.iter().zip(0..).map(|(v, number)| ((v.patch, v.lattice), number)).collect();
+        check(
+            self.vertices.iter().all(|v| (v.patch as usize) < patches),
+            "the patch of a vertex",
+        )?;
+        check(
+            self.buried.len() == vertices,
+            "the number of buried vertices",
+        )?;
+        self.at = self
+            .vertices
+            .iter()
+            .zip(0..)
+            .map(|(v, number)| ((v.patch, v.lattice), number))
+            .collect();
         self.elements.iter_mut().for_each(|e| e.hanging = [NONE; 4]);
         let buried = std::mem::take(&mut self.buried);
         self.finish_topology();

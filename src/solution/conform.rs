@@ -17,8 +17,19 @@ type Point = GeomWithData<[f64; 3], u32>;
 /// Triangulates the leaves of `mesh` with the light on it.
 pub(super) fn conform(mesh: &Mesh, light: &Light) -> LitMesh {
     let borders = Borders::new(mesh);
-    let mut builder = Builder { mesh, light, borders: &borders, lit: LitMesh::default(), vertices: FxHashMap::default(), dark: Vec::new() };
-    builder.lit.positions = borders.positions.iter().map(|p| mesh.frame.leave(*p)).collect();
+    let mut builder = Builder {
+        mesh,
+        light,
+        borders: &borders,
+        lit: LitMesh::default(),
+        vertices: FxHashMap::default(),
+        dark: Vec::new(),
+    };
+    builder.lit.positions = borders
+        .positions
+        .iter()
+        .map(|p| mesh.frame.leave(*p))
+        .collect();
     for leaf in mesh.leaves() {
         builder.add(leaf);
     }
@@ -43,36 +54,57 @@ impl Borders {
             mesh.patches[vertex.patch as usize].on_border(vertex.lattice)
         };
         let vertices: Vec<u32> = (0..mesh.vertices.len() as u32).filter(on_border).collect();
-        let all = vertices.iter().map(|v| Point::new(mesh.position(*v).to_array(), *v)).collect();
+        let all = vertices
+            .iter()
+            .map(|v| Point::new(mesh.position(*v).to_array(), *v))
+            .collect();
         let close: RTree<Point> = RTree::bulk_load(all);
         let (mut positions, mut of_vertex) = (Vec::new(), FxHashMap::default());
         for vertex in vertices {
             if !of_vertex.contains_key(&vertex) {
                 let position = mesh.position(vertex);
-                for same in close.locate_within_distance(position.to_array(), tolerance * tolerance) {
+                for same in close.locate_within_distance(position.to_array(), tolerance * tolerance)
+                {
                     of_vertex.entry(same.data).or_insert(positions.len() as u32);
                 }
                 positions.push(position);
             }
         }
-        let welded = positions.iter().zip(0..).map(|(p, number)| Point::new(p.to_array(), number)).collect();
-        Self { positions, of_vertex, tree: RTree::bulk_load(welded), tolerance }
+        let welded = positions
+            .iter()
+            .zip(0..)
+            .map(|(p, number)| Point::new(p.to_array(), number))
+            .collect();
+        Self {
+            positions,
+            of_vertex,
+            tree: RTree::bulk_load(welded),
+            tolerance,
+        }
     }
 
     /// The positions on the open segment from `a` to `b`, in order, with their place on it.
     fn between(&self, a: DVec3, b: DVec3) -> Vec<(f64, u32)> {
         let margin = DVec3::splat(self.tolerance);
-        let envelope = AABB::from_corners((a.min(b) - margin).to_array(), (a.max(b) + margin).to_array());
+        let envelope = AABB::from_corners(
+            (a.min(b) - margin).to_array(),
+            (a.max(b) + margin).to_array(),
+        );
         let along = b - a;
         let length = along.length();
         let place = |point: &Point| {
             let to = DVec3::from_array(*point.geom()) - a;
             let place = to.dot(along) / (length * length);
             let aside = (to - along * place).length();
-            let inside = place * length > 2.0 * self.tolerance && (1.0 - place) * length > 2.0 * self.tolerance;
+            let inside = place * length > 2.0 * self.tolerance
+                && (1.0 - place) * length > 2.0 * self.tolerance;
             (inside && aside <= self.tolerance).then_some((place, point.data))
         };
-        let mut found: Vec<_> = self.tree.locate_in_envelope(envelope).filter_map(place).collect();
+        let mut found: Vec<_> = self
+            .tree
+            .locate_in_envelope(envelope)
+            .filter_map(place)
+            .collect();
         found.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         found
     }
@@ -101,10 +133,21 @@ impl Builder<'_> {
         let patch = &self.mesh.patches[of.patch as usize];
         let centre = self.vertex(of.centre);
         for (side, a, b) in of.sides() {
-            let chain: &[u32] = if of.hanging[side] == NONE { &[a, b] } else { &[a, of.hanging[side], b] };
+            let chain: &[u32] = if of.hanging[side] == NONE {
+                &[a, b]
+            } else {
+                &[a, of.hanging[side], b]
+            };
             for pair in chain.windows(2) {
-                let border = patch.common_side(self.mesh.vertices[pair[0] as usize].lattice, self.mesh.vertices[pair[1] as usize].lattice);
-                let stops = if border.is_some() { self.stops(pair[0], pair[1]) } else { vec![self.vertex(pair[0]), self.vertex(pair[1])] };
+                let border = patch.common_side(
+                    self.mesh.vertices[pair[0] as usize].lattice,
+                    self.mesh.vertices[pair[1] as usize].lattice,
+                );
+                let stops = if border.is_some() {
+                    self.stops(pair[0], pair[1])
+                } else {
+                    vec![self.vertex(pair[0]), self.vertex(pair[1])]
+                };
                 for ends in stops.windows(2) {
                     self.lit.triangles.push(LitTriangle {
                         vertices: [centre, ends[0], ends[1]],
@@ -122,7 +165,10 @@ impl Builder<'_> {
         let patch = self.mesh.vertices[a as usize].patch;
         let (first, last) = (self.vertex(a), self.vertex(b));
         let mut stops = vec![first];
-        for (place, position) in self.borders.between(self.mesh.position(a), self.mesh.position(b)) {
+        for (place, position) in self
+            .borders
+            .between(self.mesh.position(a), self.mesh.position(b))
+        {
             let [from, to] = [a, b].map(|v| self.light.irradiance[v as usize]);
             let irradiance = from.lerp(to, place as f32);
             let buried = self.mesh.buried[a as usize] && self.mesh.buried[b as usize];
@@ -142,22 +188,45 @@ impl Builder<'_> {
     fn vertex(&mut self, vertex: u32) -> u32 {
         let patch = self.mesh.vertices[vertex as usize].patch;
         let welded = self.borders.of_vertex.get(&vertex);
-        let key = welded.map_or(Key::Inner(vertex), |position| Key::Border { patch, position: *position });
+        let key = welded.map_or(Key::Inner(vertex), |position| Key::Border {
+            patch,
+            position: *position,
+        });
         if let Some(known) = self.vertices.get(&key) {
             return *known;
         }
         let position = welded.copied().unwrap_or_else(|| {
-            self.lit.positions.push(self.mesh.frame.leave(self.mesh.position(vertex)));
+            self.lit
+                .positions
+                .push(self.mesh.frame.leave(self.mesh.position(vertex)));
             self.lit.positions.len() as u32 - 1
         });
-        self.insert(key, patch, position, self.light.irradiance[vertex as usize], self.mesh.buried[vertex as usize])
+        self.insert(
+            key,
+            patch,
+            position,
+            self.light.irradiance[vertex as usize],
+            self.mesh.buried[vertex as usize],
+        )
     }
 
-    fn insert(&mut self, key: Key, patch: u32, position: u32, irradiance: Spectrum, buried: bool) -> u32 {
+    fn insert(
+        &mut self,
+        key: Key,
+        patch: u32,
+        position: u32,
+        irradiance: Spectrum,
+        buried: bool,
+    ) -> u32 {
         let of = &self.mesh.patches[patch as usize];
         let radiosity = of.exitance + of.reflectance * irradiance;
         let number = self.lit.vertices.len() as u32;
-        self.lit.vertices.push(LitVertex { position, normal: of.normal.as_vec3(), irradiance, radiosity });
+        self.lit.vertices.push(LitVertex {
+            position,
+            normal: of.normal.as_vec3(),
+            irradiance,
+            radiosity,
+        });
         self.vertices.insert(key, number);
         self.dark.push(buried);
         number
@@ -168,7 +237,10 @@ impl Builder<'_> {
         let mut beside_open = vec![false; self.lit.vertices.len()];
         for triangle in &self.lit.triangles {
             if triangle.vertices.iter().any(|v| !self.dark[*v as usize]) {
-                triangle.vertices.iter().for_each(|v| beside_open[*v as usize] = true);
+                triangle
+                    .vertices
+                    .iter()
+                    .for_each(|v| beside_open[*v as usize] = true);
             }
         }
         for (vertex, beside_open) in self.lit.vertices.iter_mut().zip(beside_open) {

@@ -46,8 +46,14 @@ impl Solution {
 
     /// Reads a solution file.
     pub fn read(path: &Path) -> Result<Self, SolutionError> {
-        let bytes = std::fs::read(path).map_err(|source| SolutionError::Unreadable { path: path.into(), source })?;
-        Self::decode(&bytes).map_err(|found| SolutionError::Damaged { path: path.into(), found })
+        let bytes = std::fs::read(path).map_err(|source| SolutionError::Unreadable {
+            path: path.into(),
+            source,
+        })?;
+        Self::decode(&bytes).map_err(|found| SolutionError::Damaged {
+            path: path.into(),
+            found,
+        })
     }
 
     /// Decodes the bytes of a solution file; the error says what was found.
@@ -56,21 +62,35 @@ impl Solution {
             return Err("not a solution file".into());
         }
         let (header, payload) = bytes.split_at(HEADER);
-        let u32_at = |at: usize| header[at..at + 4].iter().rev().fold(0u32, |n, b| n << 8 | u32::from(*b));
+        let u32_at = |at: usize| {
+            header[at..at + 4]
+                .iter()
+                .rev()
+                .fold(0u32, |n, b| n << 8 | u32::from(*b))
+        };
         let (version, checksum) = (u32_at(8), u32_at(20));
         if version != VERSION {
-            return Err(format!("format version {version}, where this program reads {VERSION}"));
+            return Err(format!(
+                "format version {version}, where this program reads {VERSION}"
+            ));
         }
         let length = u64::from(u32_at(12)) | u64::from(u32_at(16)) << 32;
         if payload.len() as u64 != length {
-            return Err(format!("{} bytes of {length}: the file is cut short or has grown", payload.len()));
+            return Err(format!(
+                "{} bytes of {length}: the file is cut short or has grown",
+                payload.len()
+            ));
         }
         if crc32fast::hash(payload) != checksum {
             return Err("the checksum does not match: the file is damaged".into());
         }
-        let mut solution: Self = postcard::from_bytes(payload).map_err(|e| format!("undecodable contents ({e})"))?;
+        let mut solution: Self =
+            postcard::from_bytes(payload).map_err(|e| format!("undecodable contents ({e})"))?;
         let vertices = solution.mesh.vertices.len();
-        if [&solution.light.irradiance, &solution.light.unshot].iter().any(|of| of.len() != vertices) {
+        if [&solution.light.irradiance, &solution.light.unshot]
+            .iter()
+            .any(|of| of.len() != vertices)
+        {
             return Err("light that does not fit the mesh".into());
         }
         if solution.light.exitance_unshot.len() != solution.mesh.patches.len() {

@@ -30,13 +30,25 @@ impl<'a> Prober<'a> {
     /// Indexes the patches of a solution.
     pub fn new(solution: &'a Solution) -> Self {
         let tolerance = MATCH * solution.mesh.frame.extent();
-        let boxes = solution.mesh.patches.iter().zip(0..).map(|(patch, number)| {
-            let corners = patch.corners().iter();
-            let low = corners.clone().fold(DVec3::INFINITY, |low, c| low.min(*c));
-            let high = corners.fold(DVec3::NEG_INFINITY, |high, c| high.max(*c));
-            GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), number)
-        });
-        Self { solution, patches: RTree::bulk_load(boxes.collect()), tolerance }
+        let boxes = solution
+            .mesh
+            .patches
+            .iter()
+            .zip(0..)
+            .map(|(patch, number)| {
+                let corners = patch.corners().iter();
+                let low = corners.clone().fold(DVec3::INFINITY, |low, c| low.min(*c));
+                let high = corners.fold(DVec3::NEG_INFINITY, |high, c| high.max(*c));
+                GeomWithData::new(
+                    Rectangle::from_corners(low.to_array(), high.to_array()),
+                    number,
+                )
+            });
+        Self {
+            solution,
+            patches: RTree::bulk_load(boxes.collect()),
+            tolerance,
+        }
     }
 
     /// The light at `point` (scene units) on the surface there that faces along `normal`, interpolated on the solution's
@@ -55,7 +67,9 @@ impl<'a> Prober<'a> {
             if facing > 0.5 && distance <= self.tolerance {
                 // Normals that agree to single precision agree.
                 let rank = ((facing * 1e6).round(), -distance, candidate.data);
-                let better = |b: &(f64, f64, u32)| rank.0 > b.0 || (rank.0 == b.0 && (rank.1, b.2) > (b.1, rank.2));
+                let better = |b: &(f64, f64, u32)| {
+                    rank.0 > b.0 || (rank.0 == b.0 && (rank.1, b.2) > (b.1, rank.2))
+                };
                 if best.as_ref().is_none_or(better) {
                     best = Some(rank);
                 }
@@ -68,13 +82,22 @@ impl<'a> Prober<'a> {
         let Solution { mesh, light, .. } = self.solution;
         let of = &mesh.patches[patch as usize];
         let (u, v) = of.coordinates(point);
-        let weighted = mesh.interpolate(mesh.leaf_at(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)), point);
+        let weighted = mesh.interpolate(
+            mesh.leaf_at(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)),
+            point,
+        );
         let irradiance = if weighted.iter().all(|(v, _)| mesh.buried[*v as usize]) {
             Spectrum::ZERO
         } else {
-            weighted.iter().map(|(v, w)| light.irradiance[*v as usize] * *w).sum()
+            weighted
+                .iter()
+                .map(|(v, w)| light.irradiance[*v as usize] * *w)
+                .sum()
         };
-        Probe { irradiance, radiosity: of.exitance + of.reflectance * irradiance }
+        Probe {
+            irradiance,
+            radiosity: of.exitance + of.reflectance * irradiance,
+        }
     }
 }
 
@@ -88,7 +111,11 @@ fn distance(point: DVec3, corners: &[DVec3], normal: DVec3) -> f64 {
             let along = ((point - *a).dot(b - *a) / b.distance_squared(*a)).clamp(0.0, 1.0);
             let foot = a.lerp(b, along);
             let beside = point - foot - normal * height;
-            aside = if aside == 0.0 { beside.length() } else { aside.min(beside.length()) };
+            aside = if aside == 0.0 {
+                beside.length()
+            } else {
+                aside.min(beside.length())
+            };
         }
     }
     debug_assert!(polygon::vector_area(corners).dot(normal) > 0.0);

@@ -11,7 +11,12 @@ use rayon::prelude::*;
 const RAYS: u32 = 16;
 
 /// Whether each vertex from `first` on is buried. One ray each; the rest only for those whose first ray ends on a dark back.
-pub(super) fn buried(mesh: &Mesh, visibility: &dyn Visibility, backing: &[Backing], first: u32) -> Vec<bool> {
+pub(super) fn buried(
+    mesh: &Mesh,
+    visibility: &dyn Visibility,
+    backing: &[Backing],
+    first: u32,
+) -> Vec<bool> {
     let count = mesh.vertices.len() - first as usize;
     if backing.iter().all(|b| b.sides == Sides::Both) {
         return vec![false; count];
@@ -21,9 +26,17 @@ pub(super) fn buried(mesh: &Mesh, visibility: &dyn Visibility, backing: &[Backin
         .par_chunks(256)
         .map(|block| {
             let mut dark = sees_dark(mesh, visibility, backing, block, 0..1);
-            let suspects: Vec<u32> = block.iter().zip(&dark).filter(|(_, dark)| **dark).map(|(v, _)| *v).collect();
-            let mut confirmed = sees_dark(mesh, visibility, backing, &suspects, 1..RAYS).into_iter();
-            dark.iter_mut().filter(|dark| **dark).for_each(|dark| *dark = confirmed.next() == Some(true));
+            let suspects: Vec<u32> = block
+                .iter()
+                .zip(&dark)
+                .filter(|(_, dark)| **dark)
+                .map(|(v, _)| *v)
+                .collect();
+            let mut confirmed =
+                sees_dark(mesh, visibility, backing, &suspects, 1..RAYS).into_iter();
+            dark.iter_mut()
+                .filter(|dark| **dark)
+                .for_each(|dark| *dark = confirmed.next() == Some(true));
             dark
         })
         .collect();
@@ -31,7 +44,13 @@ pub(super) fn buried(mesh: &Mesh, visibility: &dyn Visibility, backing: &[Backin
 }
 
 /// For each vertex, whether all of its rays with the given numbers end on sides that do not radiate.
-fn sees_dark(mesh: &Mesh, visibility: &dyn Visibility, backing: &[Backing], vertices: &[u32], rays: std::ops::Range<u32>) -> Vec<bool> {
+fn sees_dark(
+    mesh: &Mesh,
+    visibility: &dyn Visibility,
+    backing: &[Backing],
+    vertices: &[u32],
+    rays: std::ops::Range<u32>,
+) -> Vec<bool> {
     let extent = mesh.frame.extent();
     let queries: Vec<Ray> = vertices
         .iter()
@@ -42,14 +61,26 @@ fn sees_dark(mesh: &Mesh, visibility: &dyn Visibility, backing: &[Backing], vert
             rays.clone().map(move |ray| {
                 // Even in azimuth and height, turned at random from vertex to vertex.
                 let [s, t] = jitter(*vertex, 0x6275_7269);
-                let spread = [(f64::from(ray) + 0.5) / f64::from(RAYS), (f64::from(ray) * 0.618_034 + s + t).fract()];
-                Ray { origin, direction: cosine_direction(normal, spread).as_vec3() }
+                let spread = [
+                    (f64::from(ray) + 0.5) / f64::from(RAYS),
+                    (f64::from(ray) * 0.618_034 + s + t).fract(),
+                ];
+                Ray {
+                    origin,
+                    direction: cosine_direction(normal, spread).as_vec3(),
+                }
             })
         })
         .collect();
     let mut hits = Vec::new();
     visibility.nearest(&queries, &mut hits);
-    let is_dark = |(hit, ray): (&Option<_>, &Ray)| hit.as_ref().is_some_and(|hit| super::escape::is_dark(hit, ray, backing));
+    let is_dark = |(hit, ray): (&Option<_>, &Ray)| {
+        hit.as_ref()
+            .is_some_and(|hit| super::escape::is_dark(hit, ray, backing))
+    };
     let per_vertex = rays.len().max(1);
-    hits.chunks(per_vertex).zip(queries.chunks(per_vertex)).map(|(h, r)| h.iter().zip(r).all(is_dark)).collect()
+    hits.chunks(per_vertex)
+        .zip(queries.chunks(per_vertex))
+        .map(|(h, r)| h.iter().zip(r).all(is_dark))
+        .collect()
 }

@@ -34,16 +34,26 @@ pub(super) fn escaped(
     extent: f64,
     (count, seed): (usize, u32),
 ) -> Power {
-    let draws: Vec<Draw> = draw(source, count, seed).into_iter().filter(|draw| is_open(draw.point)).collect();
+    let draws: Vec<Draw> = draw(source, count, seed)
+        .into_iter()
+        .filter(|draw| is_open(draw.point))
+        .collect();
     draws
         .par_chunks(1024)
         .map(|chunk| {
             let rays: Vec<Ray> = chunk.iter().map(|d| ray(source, d, extent)).collect();
             let mut hits = Vec::new();
             visibility.nearest(&rays, &mut hits);
-            let lost = |(hit, ray): (&Option<Hit>, &Ray)| hit.as_ref().is_none_or(|hit| is_dark(hit, ray, backing));
-            let power = |(draw, is_lost): (&Draw, bool)| if is_lost { draw.power } else { Power::ZERO };
-            chunk.iter().zip(hits.iter().zip(&rays).map(lost)).map(power).sum::<Power>()
+            let lost = |(hit, ray): (&Option<Hit>, &Ray)| {
+                hit.as_ref().is_none_or(|hit| is_dark(hit, ray, backing))
+            };
+            let power =
+                |(draw, is_lost): (&Draw, bool)| if is_lost { draw.power } else { Power::ZERO };
+            chunk
+                .iter()
+                .zip(hits.iter().zip(&rays).map(lost))
+                .map(power)
+                .sum::<Power>()
         })
         .collect::<Vec<_>>()
         .into_iter()
@@ -59,7 +69,10 @@ struct Draw {
 
 /// Points in proportion to radiosity, by systematic sampling over the cells.
 fn draw(source: &Source, count: usize, seed: u32) -> Vec<Draw> {
-    let total: f64 = source.finest().map(|(_, p)| f64::from(p.element_sum())).sum();
+    let total: f64 = source
+        .finest()
+        .map(|(_, p)| f64::from(p.element_sum()))
+        .sum();
     let step = total / count as f64;
     let mut draws = Vec::with_capacity(count);
     let (mut passed, mut next) = (0.0, 0.5 * step);
@@ -70,7 +83,11 @@ fn draw(source: &Source, count: usize, seed: u32) -> Vec<Draw> {
             let number = draws.len() as u32;
             let [s, t] = jitter(seed, 2 * number);
             let share: Spectrum = power / sum as f32;
-            draws.push(Draw { point: cell.at(s, t), direction: spread(number, seed), power: share.as_dvec3() * step });
+            draws.push(Draw {
+                point: cell.at(s, t),
+                direction: spread(number, seed),
+                power: share.as_dvec3() * step,
+            });
             next += step;
         }
     }
@@ -81,13 +98,19 @@ fn draw(source: &Source, count: usize, seed: u32) -> Vec<Draw> {
 fn spread(number: u32, seed: u32) -> [f64; 2] {
     let shift = jitter(seed, u32::MAX);
     let turn = |step: f64, shift: f64| (f64::from(number) * step + shift).fract();
-    [turn(0.754_877_666_246_692_7, shift[0]), turn(0.569_840_290_998_053_3, shift[1])]
+    [
+        turn(0.754_877_666_246_692_7, shift[0]),
+        turn(0.569_840_290_998_053_3, shift[1]),
+    ]
 }
 
 fn ray(source: &Source, draw: &Draw, extent: f64) -> Ray {
     let normal = source.normal();
     let direction = cosine_direction(normal, draw.direction);
-    Ray { origin: lift(draw.point, normal, extent).as_vec3(), direction: direction.as_vec3() }
+    Ray {
+        origin: lift(draw.point, normal, extent).as_vec3(),
+        direction: direction.as_vec3(),
+    }
 }
 
 /// A direction about `normal`, cosine-distributed for evenly distributed (a, b) in the unit square.

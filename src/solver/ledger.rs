@@ -25,12 +25,19 @@ impl Ledger {
 
     /// Takes the balance of a mesh. Areas of the frame become m² through `square_metres`, the area in m² of a frame unit squared.
     pub(super) fn balance(mesh: &Mesh, light: &Light, escaped: Power, square_metres: f64) -> Self {
-        let mut ledger = Self { escaped: escaped * square_metres, ..Self::default() };
+        let mut ledger = Self {
+            escaped: escaped * square_metres,
+            ..Self::default()
+        };
         for (number, patch) in mesh.patches.iter().enumerate() {
-            let received: Power =
-                patch.vertices.iter().map(|v| light.irradiance[*v as usize].as_dvec3() * mesh.weights[*v as usize]).sum();
+            let received: Power = patch
+                .vertices
+                .iter()
+                .map(|v| light.irradiance[*v as usize].as_dvec3() * mesh.weights[*v as usize])
+                .sum();
             ledger.emitted += patch.exitance.as_dvec3() * patch.area * square_metres;
-            ledger.absorbed += (Power::ONE - patch.reflectance.as_dvec3()) * received * square_metres;
+            ledger.absorbed +=
+                (Power::ONE - patch.reflectance.as_dvec3()) * received * square_metres;
             ledger.unshot += light.unshot_power(mesh, number) * square_metres;
         }
         ledger

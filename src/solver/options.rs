@@ -37,8 +37,8 @@ pub enum FormFactorRule {
     Polygon,
 }
 
-/// All options of a solve. Thresholds marked *relative* are multiples of the reference irradiance, which is the emitted
-/// power over the area that receives.
+/// All options of a solve. Thresholds marked *relative* are multiples of an irradiance between the scene's reference (emitted
+/// power over the area of all patches) and the local one; see `local_share`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// Test 1, relative: an element is split while its corners differ by more (ε_d).
@@ -49,8 +49,7 @@ pub struct Options {
     pub epsilon_v: f64,
     /// Test 3 is asked where the shot, unoccluded, would give more than this; relative.
     pub visibility_significance: f64,
-    /// How far the tolerance of tests 1 and 2 follows the light that is there: 0 for the reference alone, 1 for the local
-    /// irradiance alone.
+    /// How far relative thresholds follow the light that is there: multiples of reference^(1 - share) · local^share.
     pub local_share: f64,
     /// How the tolerance of tests 1 and 2 grows as elements shrink below the first size h₀: by (h₀/h)^exponent. 0, as in the paper,
     /// bounds the error at every point; 1 shares out the squared error evenly over the area, so that a shadow edge
@@ -108,7 +107,11 @@ impl Preset {
             local_share: 0.5,
             size_exponent: 1.0,
             quantity: Quantity::Irradiance,
-            limits: MeshLimits { initial_size: 0.125, max_depth: 10, min_size: 0.004 },
+            limits: MeshLimits {
+                initial_size: 0.125,
+                max_depth: 10,
+                min_size: 0.004,
+            },
             meshing_power: 0.003,
             epsilon_fd: 0.003,
             epsilon_fe: 0.10,
@@ -126,7 +129,11 @@ impl Preset {
                 epsilon_d: 0.60,
                 epsilon_r: 0.08,
                 visibility_significance: 1.0,
-                limits: MeshLimits { initial_size: 0.25, max_depth: 7, min_size: 0.016 },
+                limits: MeshLimits {
+                    initial_size: 0.25,
+                    max_depth: 7,
+                    min_size: 0.016,
+                },
                 meshing_power: 0.02,
                 epsilon_fd: 0.01,
                 epsilon_fe: 0.4,
@@ -140,7 +147,11 @@ impl Preset {
                 epsilon_r: 0.005,
                 epsilon_v: 0.3,
                 visibility_significance: 0.2,
-                limits: MeshLimits { initial_size: 0.0625, max_depth: 12, min_size: 0.001 },
+                limits: MeshLimits {
+                    initial_size: 0.0625,
+                    max_depth: 12,
+                    min_size: 0.001,
+                },
                 meshing_power: 0.0005,
                 epsilon_fd: 0.0005,
                 epsilon_fe: 0.03,

@@ -20,8 +20,6 @@ pub(super) struct Refinement<'a> {
     pub source: &'a Source,
     pub options: &'a Options,
     pub backing: &'a [Backing],
-    /// The scene's reference irradiance.
-    pub reference: f64,
     pub rays: u64,
 }
 
@@ -56,7 +54,11 @@ impl Refinement<'_> {
     fn residual(&self, element: u32) -> bool {
         let of = &self.mesh.elements[element as usize];
         let corners = of.corners();
-        let mean = corners.iter().map(|v| self.light.irradiance[*v as usize]).sum::<Spectrum>() / corners.len() as f32;
+        let mean = corners
+            .iter()
+            .map(|v| self.light.irradiance[*v as usize])
+            .sum::<Spectrum>()
+            / corners.len() as f32;
         let residual = (self.light.irradiance[of.centre as usize] - mean).abs();
         self.exceeds(element, residual, self.options.epsilon_r)
     }
@@ -67,22 +69,36 @@ impl Refinement<'_> {
             Quantity::Irradiance => Spectrum::ONE,
             Quantity::Radiosity => self.mesh.patches[of.patch as usize].reflectance,
         };
-        let local = f64::from(self.light.irradiance[of.centre as usize].max_element());
-        let share = self.options.local_share;
         let h0 = self.options.limits.initial_size * self.mesh.frame.extent();
-        let growth = (h0 / self.mesh.longest_side(element)).max(1.0).powf(self.options.size_exponent);
-        let scale = (self.reference * (1.0 - share) + local * share) * growth;
-        f64::from((difference * weight).max_element()) > epsilon * scale
+        let growth = (h0 / self.mesh.longest_side(element))
+            .max(1.0)
+            .powf(self.options.size_exponent);
+        f64::from((difference * weight).max_element()) > epsilon * self.scale(element) * growth
+    }
+
+    /// The irradiance that relative thresholds are multiples of on an element.
+    fn scale(&self, element: u32) -> f64 {
+        let of = &self.mesh.elements[element as usize];
+        let vertices = of.corners().iter().chain([&of.centre]);
+        let local = vertices
+            .map(|v| self.light.irradiance[*v as usize].max_element())
+            .fold(0.0, f32::max);
+        self.sampler.thresholds.scale.at(f64::from(local))
     }
 
     /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
     fn visibility_differs(&mut self, elements: &[u32]) -> Vec<u32> {
-        let threshold = self.options.visibility_significance * self.reference;
         let mut failed = Vec::new();
         let mut open = Vec::new();
         for &element in elements {
             let of = &self.mesh.elements[element as usize];
-            let known = || of.corners().iter().chain([&of.centre]).map(|v| &self.arrived[*v as usize]);
+            let threshold = self.options.visibility_significance * self.scale(element);
+            let known = || {
+                of.corners()
+                    .iter()
+                    .chain([&of.centre])
+                    .map(|v| &self.arrived[*v as usize])
+            };
             if known().any(|g| f64::from(g.unoccluded.max_element()) > threshold) {
                 let range = known().fold(Range::EMPTY, |range, g| range.with(g.visibility));
                 if range.width() >= self.options.epsilon_v {
@@ -93,22 +109,31 @@ impl Refinement<'_> {
             }
         }
         let middles = self.middles(&open);
-        failed.extend(open.iter().filter(|(element, range)| {
-            let of = &self.mesh.elements[*element as usize];
-            let all = of.sides().fold(*range, |range, (side, a, b)| {
-                let known = match of.hanging[side] {
-                    NONE => middles.get(&(of.patch, self.middle(a, b))).copied().flatten(),
-                    vertex => self.arrived[vertex as usize].visibility,
-                };
-                range.with(known)
-            });
-            all.width() >= self.options.epsilon_v
-        }).map(|(element, _)| *element));
+        failed.extend(
+            open.iter()
+                .filter(|(element, range)| {
+                    let of = &self.mesh.elements[*element as usize];
+                    let all = of.sides().fold(*range, |range, (side, a, b)| {
+                        let known = match of.hanging[side] {
+                            NONE => middles
+                                .get(&(of.patch, self.middle(a, b)))
+                                .copied()
+                                .flatten(),
+                            vertex => self.arrived[vertex as usize].visibility,
+                        };
+                        range.with(known)
+                    });
+                    all.width() >= self.options.epsilon_v
+                })
+                .map(|(element, _)| *element),
+        );
         failed
     }
 
     fn middle(&self, a: u32, b: u32) -> Lattice {
-        self.mesh.vertices[a as usize].lattice.midpoint(self.mesh.vertices[b as usize].lattice)
+        self.mesh.vertices[a as usize]
+            .lattice
+            .midpoint(self.mesh.vertices[b as usize].lattice)
     }
 
     /// Visibility indices in the middles of the sides, each computed once for both neighbours.
@@ -123,16 +148,30 @@ impl Refinement<'_> {
                 if of.hanging[side] == NONE && seen.insert(key, ()).is_none() {
                     let [pa, pb] = [a, b].map(|v| self.mesh.vertices[v as usize].point);
                     let normal = self.mesh.patches[of.patch as usize].normal;
+                    let irradiance = self.light.irradiance[a as usize]
+                        .max(self.light.irradiance[b as usize])
+                        .max_element();
                     // A seed of its own: from the place, as no vertex number is there yet.
-                    let seed = key.1.u.wrapping_mul(0x9e37_79b1) ^ key.1.v.rotate_left(15) ^ of.patch.rotate_left(7);
+                    let seed = key.1.u.wrapping_mul(0x9e37_79b1)
+                        ^ key.1.v.rotate_left(15)
+                        ^ of.patch.rotate_left(7);
                     keys.push(key);
-                    points.push((Receiver { point: (pa + pb) * 0.5, normal }, seed));
+                    points.push((
+                        Receiver {
+                            point: (pa + pb) * 0.5,
+                            normal,
+                            irradiance,
+                        },
+                        seed,
+                    ));
                 }
             }
         }
         let (gathers, rays) = evaluate(self.sampler, self.source, &points);
         self.rays += rays;
-        keys.into_iter().zip(gathers.iter().map(|g| g.visibility)).collect()
+        keys.into_iter()
+            .zip(gathers.iter().map(|g| g.visibility))
+            .collect()
     }
 
     /// Splits, then splits more until the quadtree is balanced; new vertices get everything before this shot interpolated
@@ -153,9 +192,21 @@ impl Refinement<'_> {
         }
         let first = first_vertex as u32;
         self.mesh.finish_topology();
-        self.mesh.mark_buried(first, &buried(self.mesh, self.sampler.visibility, self.backing, first));
-        let open: Vec<u32> = (first..self.mesh.vertices.len() as u32).filter(|v| !self.mesh.buried[*v as usize]).collect();
-        self.rays += shoot_at(self.mesh, self.sampler, self.source, &open, self.arrived);
+        self.mesh.mark_buried(
+            first,
+            &buried(self.mesh, self.sampler.visibility, self.backing, first),
+        );
+        let open: Vec<u32> = (first..self.mesh.vertices.len() as u32)
+            .filter(|v| !self.mesh.buried[*v as usize])
+            .collect();
+        self.rays += shoot_at(
+            self.mesh,
+            self.light,
+            self.sampler,
+            self.source,
+            &open,
+            self.arrived,
+        );
         let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, first);
         for vertex in first_vertex..self.mesh.vertices.len() {
@@ -177,7 +228,10 @@ impl Refinement<'_> {
         for vertex in known..count as u32 {
             let weighted = self.mesh.interpolate(parent, self.mesh.position(vertex));
             let past = |now: &[Spectrum]| -> Spectrum {
-                weighted.iter().map(|(v, w)| (now[*v as usize] - self.arrived[*v as usize].irradiance) * *w).sum()
+                weighted
+                    .iter()
+                    .map(|(v, w)| (now[*v as usize] - self.arrived[*v as usize].irradiance) * *w)
+                    .sum()
             };
             let (irradiance, unshot) = (past(&self.light.irradiance), past(&self.light.unshot));
             self.light.irradiance[vertex as usize] = irradiance;
@@ -195,11 +249,17 @@ struct Range {
 }
 
 impl Range {
-    const EMPTY: Range = Range { low: f32::INFINITY, high: f32::NEG_INFINITY };
+    const EMPTY: Range = Range {
+        low: f32::INFINITY,
+        high: f32::NEG_INFINITY,
+    };
 
     /// A point with nothing of the source above its horizon is left out.
     fn with(self, index: Option<f32>) -> Self {
-        index.map_or(self, |v| Range { low: self.low.min(v), high: self.high.max(v) })
+        index.map_or(self, |v| Range {
+            low: self.low.min(v),
+            high: self.high.max(v),
+        })
     }
 
     fn width(self) -> f64 {

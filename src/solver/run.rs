@@ -9,7 +9,7 @@ use super::refine::Refinement;
 use super::shoot::{faces, shoot_at};
 use super::source::source_of;
 use super::state::Light;
-use crate::form_factor::{Gather, Sampler, Source, SourceThresholds};
+use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::{Corners, Scene};
@@ -75,28 +75,53 @@ pub struct Outcome {
 
 /// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
 pub fn occluders(scene: &Scene, mesh: &Mesh) -> Triangles {
-    let vertices = scene.vertices.iter().map(|v| mesh.frame.enter(*v).as_vec3()).collect();
-    let indices = scene.surfaces.iter().flat_map(|surface| match surface.corners {
-        Corners::Triangle(t) => vec![t],
-        Corners::Quad([a, b, c, d]) => vec![[a, b, c], [a, c, d]],
-    });
-    Triangles { vertices, indices: indices.collect() }
+    let vertices = scene
+        .vertices
+        .iter()
+        .map(|v| mesh.frame.enter(*v).as_vec3())
+        .collect();
+    let indices = scene
+        .surfaces
+        .iter()
+        .flat_map(|surface| match surface.corners {
+            Corners::Triangle(t) => vec![t],
+            Corners::Quad([a, b, c, d]) => vec![[a, b, c], [a, c, d]],
+        });
+    Triangles {
+        vertices,
+        indices: indices.collect(),
+    }
 }
 
 impl<'a> Solver<'a> {
     /// Prepares a solve of `scene` on its coarsest `mesh`; `visibility` answers for the scene's [`occluders`].
-    pub fn new(scene: &Scene, mut mesh: Mesh, visibility: &'a dyn Visibility, options: Options) -> Self {
+    pub fn new(
+        scene: &Scene,
+        mut mesh: Mesh,
+        visibility: &'a dyn Visibility,
+        options: Options,
+    ) -> Self {
         let mut backing = Vec::new();
         let mut fronts = mesh.patches.iter().filter(|p| !p.back);
         for surface in &scene.surfaces {
             let normal = fronts.next().map_or(glam::DVec3::Z, |p| p.normal);
             let triangles = surface.corners.indices().len() - 2;
-            backing.extend(std::iter::repeat_n(Backing { normal, sides: surface.sides }, triangles));
+            backing.extend(std::iter::repeat_n(
+                Backing {
+                    normal,
+                    sides: surface.sides,
+                },
+                triangles,
+            ));
         }
         mesh.mark_buried(0, &buried(&mesh, visibility, &backing, 0));
         let light = Light::new(&mesh);
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
-        let emitted: f64 = mesh.patches.iter().map(|p| f64::from(p.exitance.max_element()) * p.area).sum();
+        let emitted: f64 = mesh
+            .patches
+            .iter()
+            .map(|p| f64::from(p.exitance.max_element()) * p.area)
+            .sum();
         let square_metres = (scene.metres_per_unit / mesh.frame.scale()).powi(2);
         let reference = if area > 0.0 { emitted / area } else { 0.0 };
         Self {
@@ -145,10 +170,18 @@ impl<'a> Solver<'a> {
             if unshot.element_sum() <= self.options.tolerance * emitted.element_sum() {
                 return StopReason::Converged;
             }
-            if self.options.max_shots.is_some_and(|most| self.shots >= most) {
+            if self
+                .options
+                .max_shots
+                .is_some_and(|most| self.shots >= most)
+            {
                 return StopReason::MaxShots;
             }
-            if self.options.time_limit.is_some_and(|limit| self.started.elapsed() >= limit) {
+            if self
+                .options
+                .time_limit
+                .is_some_and(|limit| self.started.elapsed() >= limit)
+            {
                 return StopReason::TimeLimit;
             }
             let shooter = select(&powers);
@@ -163,8 +196,18 @@ impl<'a> Solver<'a> {
         let source = source_of(&self.mesh, &self.light, shooter, &self.options, &thresholds);
         self.light.take(&self.mesh, shooter);
         let extent = self.mesh.frame.extent();
-        let sampler = Sampler { visibility: self.visibility, extent, formula: self.options.formula(), thresholds };
-        let reached: Vec<bool> = self.mesh.patches.iter().map(|p| faces(p, &source, extent)).collect();
+        let sampler = Sampler {
+            visibility: self.visibility,
+            extent,
+            formula: self.options.formula(),
+            thresholds,
+        };
+        let reached: Vec<bool> = self
+            .mesh
+            .patches
+            .iter()
+            .map(|p| faces(p, &source, extent))
+            .collect();
         let mut arrived = self.shoot_at_vertices(&sampler, &source, &reached);
         if power >= self.options.meshing_power {
             self.refine(&sampler, &source, &reached, &mut arrived, observer);
@@ -173,16 +216,42 @@ impl<'a> Solver<'a> {
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
         let is_open = |point| self.is_open(shooter, point);
-        self.escaped += escaped(&source, self.visibility, &self.backing, is_open, extent, (rays, self.shots as u32));
+        self.escaped += escaped(
+            &source,
+            self.visibility,
+            &self.backing,
+            is_open,
+            extent,
+            (rays, self.shots as u32),
+        );
         self.shots += 1;
     }
 
-    fn shoot_at_vertices(&mut self, sampler: &Sampler, source: &Source, reached: &[bool]) -> Vec<Gather> {
-        let patches = self.mesh.patches.iter().zip(reached).filter(|(_, reached)| **reached);
+    fn shoot_at_vertices(
+        &mut self,
+        sampler: &Sampler,
+        source: &Source,
+        reached: &[bool],
+    ) -> Vec<Gather> {
+        let patches = self
+            .mesh
+            .patches
+            .iter()
+            .zip(reached)
+            .filter(|(_, reached)| **reached);
         let vertices = patches.flat_map(|(patch, _)| patch.vertices.iter().copied());
-        let vertices: Vec<u32> = vertices.filter(|v| !self.mesh.buried[*v as usize]).collect();
+        let vertices: Vec<u32> = vertices
+            .filter(|v| !self.mesh.buried[*v as usize])
+            .collect();
         let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        self.rays += shoot_at(&self.mesh, sampler, source, &vertices, &mut arrived);
+        self.rays += shoot_at(
+            &self.mesh,
+            &self.light,
+            sampler,
+            source,
+            &vertices,
+            &mut arrived,
+        );
         let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, 0);
         for (vertex, received) in irradiance.into_iter().enumerate() {
@@ -193,9 +262,19 @@ impl<'a> Solver<'a> {
         arrived
     }
 
-    fn refine(&mut self, sampler: &Sampler, source: &Source, reached: &[bool], arrived: &mut Vec<Gather>, observer: &mut dyn Observer) {
-        let mut candidates: Vec<u32> =
-            self.mesh.leaves().filter(|e| reached[self.mesh.elements[*e as usize].patch as usize]).collect();
+    fn refine(
+        &mut self,
+        sampler: &Sampler,
+        source: &Source,
+        reached: &[bool],
+        arrived: &mut Vec<Gather>,
+        observer: &mut dyn Observer,
+    ) {
+        let mut candidates: Vec<u32> = self
+            .mesh
+            .leaves()
+            .filter(|e| reached[self.mesh.elements[*e as usize].patch as usize])
+            .collect();
         while !candidates.is_empty() {
             let mut refinement = Refinement {
                 mesh: &mut self.mesh,
@@ -205,12 +284,12 @@ impl<'a> Solver<'a> {
                 source,
                 options: &self.options,
                 backing: &self.backing,
-                reference: self.reference,
                 rays: 0,
             };
             candidates = refinement.pass(&candidates);
             self.rays += refinement.rays;
-            if observer.progress(&self.progress(self.unshot_powers().iter().sum())) == Control::Stop {
+            if observer.progress(&self.progress(self.unshot_powers().iter().sum())) == Control::Stop
+            {
                 return;
             }
         }
@@ -219,23 +298,38 @@ impl<'a> Solver<'a> {
     /// Whether the nearest vertex to a point of a patch is open.
     fn is_open(&self, patch: usize, point: DVec3) -> bool {
         let (u, v) = self.mesh.patches[patch].coordinates(point);
-        let weighted = self.mesh.interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
+        let weighted = self
+            .mesh
+            .interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
         let nearest = weighted.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         nearest.is_none_or(|(vertex, _)| !self.mesh.buried[*vertex as usize])
     }
 
     fn source_thresholds(&self) -> SourceThresholds {
-        let raw = self.options.raw_form_factors;
-        let unit = if raw { 1.0 } else { self.reference };
-        SourceThresholds { difference: self.options.epsilon_fd * unit, estimate: self.options.epsilon_fe * unit, raw }
+        SourceThresholds {
+            difference: self.options.epsilon_fd,
+            estimate: self.options.epsilon_fe,
+            raw: self.options.raw_form_factors,
+            scale: ToleranceScale {
+                reference: self.reference,
+                local_share: self.options.local_share,
+            },
+        }
     }
 
     fn unshot_powers(&self) -> Vec<Power> {
-        (0..self.mesh.patches.len()).into_par_iter().map(|p| self.light.unshot_power(&self.mesh, p)).collect()
+        (0..self.mesh.patches.len())
+            .into_par_iter()
+            .map(|p| self.light.unshot_power(&self.mesh, p))
+            .collect()
     }
 
     fn emitted(&self) -> Power {
-        self.mesh.patches.iter().map(|p| p.exitance.as_dvec3() * p.area).sum()
+        self.mesh
+            .patches
+            .iter()
+            .map(|p| p.exitance.as_dvec3() * p.area)
+            .sum()
     }
 
     fn progress(&self, unshot: Power) -> Progress {

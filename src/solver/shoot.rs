@@ -1,5 +1,6 @@
 //! One source evaluated at many vertices.
 
+use super::state::Light;
 use crate::form_factor::{Gather, Receiver, Sampler, Scratch, Source};
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
@@ -9,7 +10,11 @@ const BLOCK: usize = 32;
 
 /// Evaluates `source` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
 /// blocks depend on the list alone and no result on another.
-pub(super) fn evaluate(sampler: &Sampler, source: &Source, points: &[(Receiver, u32)]) -> (Vec<Gather>, u64) {
+pub(super) fn evaluate(
+    sampler: &Sampler,
+    source: &Source,
+    points: &[(Receiver, u32)],
+) -> (Vec<Gather>, u64) {
     let blocks: Vec<(Vec<Gather>, u64)> = points
         .par_chunks(BLOCK)
         .map_init(Scratch::default, |scratch, block| {
@@ -19,12 +24,28 @@ pub(super) fn evaluate(sampler: &Sampler, source: &Source, points: &[(Receiver, 
         })
         .collect();
     let rays = blocks.iter().map(|(_, rays)| rays).sum();
-    (blocks.into_iter().flat_map(|(gathers, _)| gathers).collect(), rays)
+    (
+        blocks
+            .into_iter()
+            .flat_map(|(gathers, _)| gathers)
+            .collect(),
+        rays,
+    )
 }
 
 /// Evaluates `source` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
-pub(super) fn shoot_at(mesh: &Mesh, sampler: &Sampler, source: &Source, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
-    let points: Vec<_> = vertices.iter().map(|v| receiver_at(mesh, *v)).collect();
+pub(super) fn shoot_at(
+    mesh: &Mesh,
+    light: &Light,
+    sampler: &Sampler,
+    source: &Source,
+    vertices: &[u32],
+    arrived: &mut [Gather],
+) -> u64 {
+    let points: Vec<_> = vertices
+        .iter()
+        .map(|v| receiver_at(mesh, light, *v))
+        .collect();
     let (gathers, rays) = evaluate(sampler, source, &points);
     for (vertex, gather) in vertices.iter().zip(gathers) {
         arrived[*vertex as usize] = gather;
@@ -33,16 +54,31 @@ pub(super) fn shoot_at(mesh: &Mesh, sampler: &Sampler, source: &Source, vertices
 }
 
 /// A vertex as a receiver.
-fn receiver_at(mesh: &Mesh, vertex: u32) -> (Receiver, u32) {
+fn receiver_at(mesh: &Mesh, light: &Light, vertex: u32) -> (Receiver, u32) {
     let of = &mesh.vertices[vertex as usize];
-    (Receiver { point: of.point, normal: mesh.patches[of.patch as usize].normal }, vertex)
+    let normal = mesh.patches[of.patch as usize].normal;
+    let irradiance = light.irradiance[vertex as usize].max_element();
+    (
+        Receiver {
+            point: of.point,
+            normal,
+            irradiance,
+        },
+        vertex,
+    )
 }
 
 /// Whether any part of `patch` can see any part of the source, planes alone considered.
 pub(super) fn faces(patch: &Patch, source: &Source, extent: f64) -> bool {
     let hair = 1e-9 * extent;
     let origin = source.corners()[0];
-    let in_front_of_source = patch.corners().iter().any(|c| source.normal().dot(*c - origin) > hair);
-    let in_front_of_patch = source.corners().iter().any(|c| patch.normal.dot(*c - patch.corners()[0]) > hair);
+    let in_front_of_source = patch
+        .corners()
+        .iter()
+        .any(|c| source.normal().dot(*c - origin) > hair);
+    let in_front_of_patch = source
+        .corners()
+        .iter()
+        .any(|c| patch.normal.dot(*c - patch.corners()[0]) > hair);
     in_front_of_source && in_front_of_patch
 }

@@ -12,15 +12,32 @@ type Quad = [[f64; 2]; 4];
 
 /// The source that shoots all that `patch` has unshot. Its total power is exactly that of the interpolant, buried parts
 /// included: rays find out that nothing leaves those.
-pub(super) fn source_of(mesh: &Mesh, light: &Light, patch: usize, options: &Options, thresholds: &SourceThresholds) -> Source {
+pub(super) fn source_of(
+    mesh: &Mesh,
+    light: &Light,
+    patch: usize,
+    options: &Options,
+    thresholds: &SourceThresholds,
+) -> Source {
     let of = &mesh.patches[patch];
-    let full = |v: &u32| light.unshot_radiosity(mesh, *v).as_dvec3() * mesh.full_weights[*v as usize];
+    let full =
+        |v: &u32| light.unshot_radiosity(mesh, *v).as_dvec3() * mesh.full_weights[*v as usize];
     let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
-    let peak = of.vertices.iter().map(|v| light.unshot_radiosity(mesh, *v).max_element()).fold(0.0, f32::max);
-    // No form factor exceeds 1, so a source this dim is never split.
-    let dim = !thresholds.raw && f64::from(peak) <= thresholds.difference.min(thresholds.estimate);
+    let peak = of
+        .vertices
+        .iter()
+        .map(|v| light.unshot_radiosity(mesh, *v).max_element())
+        .fold(0.0, f32::max);
+    // No form factor exceeds 1, so a source this dim is never split where thresholds do not follow the local light.
+    let unit = thresholds.scale.reference;
+    let fixed = !thresholds.raw && thresholds.scale.local_share == 0.0;
+    let dim = fixed && f64::from(peak) <= unit * thresholds.difference.min(thresholds.estimate);
     let levels = if dim { 1 } else { options.source_levels() };
-    let constant = options.shooting == Shooting::Mean || of.vertices.iter().all(|v| light.unshot[*v as usize] == Spectrum::ZERO);
+    let constant = options.shooting == Shooting::Mean
+        || of
+            .vertices
+            .iter()
+            .all(|v| light.unshot[*v as usize] == Spectrum::ZERO);
     let finest = if constant {
         vec![mean.as_vec3(); 1 << (2 * levels)]
     } else {
@@ -37,16 +54,27 @@ pub(super) fn source_of(mesh: &Mesh, light: &Light, patch: usize, options: &Opti
 fn interpolated_cells(mesh: &Mesh, light: &Light, patch: usize, levels: u32) -> Vec<Spectrum> {
     let triangle = mesh.patches[patch].is_triangle();
     let cells = subdivide(vec![root(triangle)], triangle, levels);
-    cells.par_iter().with_min_len(64).map(|cell| cell_mean(mesh, light, patch, cell, 2)).collect()
+    cells
+        .par_iter()
+        .with_min_len(64)
+        .map(|cell| cell_mean(mesh, light, patch, cell, 2))
+        .collect()
 }
 
 fn root(triangle: bool) -> Quad {
-    if triangle { [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]] } else { [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] }
+    if triangle {
+        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]
+    } else {
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+    }
 }
 
 fn subdivide(mut cells: Vec<Quad>, triangle: bool, levels: u32) -> Vec<Quad> {
     for _ in 0..levels {
-        cells = cells.iter().flat_map(|cell| parts(cell, triangle)).collect();
+        cells = cells
+            .iter()
+            .flat_map(|cell| parts(cell, triangle))
+            .collect();
     }
     cells
 }
@@ -57,10 +85,20 @@ fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
     let (ab, bc) = (half(a, b), half(b, c));
     if triangle {
         let ca = half(c, a);
-        [[a, ab, ca, a], [ab, b, bc, ab], [ca, bc, c, ca], [bc, ca, ab, bc]]
+        [
+            [a, ab, ca, a],
+            [ab, b, bc, ab],
+            [ca, bc, c, ca],
+            [bc, ca, ab, bc],
+        ]
     } else {
         let (cd, da, m) = (half(c, d), half(d, a), half(a, c));
-        [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]]
+        [
+            [a, ab, m, da],
+            [ab, b, bc, m],
+            [m, bc, c, cd],
+            [da, m, cd, d],
+        ]
     }
 }
 
@@ -73,15 +111,28 @@ fn cell_mean(mesh: &Mesh, light: &Light, patch: usize, cell: &Quad, finer: u32) 
     let leaf = mesh.leaf_at(patch as u32, u, v);
     let side = (cell[1][0] - cell[0][0]).hypot(cell[1][1] - cell[0][1]);
     if finer > 0 && mesh.unit_side(leaf) < 0.9 * side {
-        return parts(cell, triangle).iter().map(|part| cell_mean(mesh, light, patch, part, finer - 1)).sum::<Spectrum>() * 0.25;
+        return parts(cell, triangle)
+            .iter()
+            .map(|part| cell_mean(mesh, light, patch, part, finer - 1))
+            .sum::<Spectrum>()
+            * 0.25;
     }
     let point = mesh.patches[patch].position_at(u, v);
-    mesh.interpolate(leaf, point).iter().map(|(v, w)| light.unshot_radiosity(mesh, *v) * *w).sum()
+    mesh.interpolate(leaf, point)
+        .iter()
+        .map(|(v, w)| light.unshot_radiosity(mesh, *v) * *w)
+        .sum()
 }
 
 /// Mean of the cells, weighted by their areas.
 fn weighted_mean(mesh: &Mesh, patch: usize, levels: u32, cells: &[Spectrum]) -> Power {
     let of = &mesh.patches[patch];
     let geometry = Source::new(of.corners(), of.normal, levels, cells);
-    geometry.finest().map(|(cell, _)| cell).zip(cells).map(|(cell, b)| b.as_dvec3() * cell.area()).sum::<Power>() / of.area
+    geometry
+        .finest()
+        .map(|(cell, _)| cell)
+        .zip(cells)
+        .map(|(cell, b)| b.as_dvec3() * cell.area())
+        .sum::<Power>()
+        / of.area
 }

@@ -20,22 +20,38 @@ impl Light {
         Self {
             irradiance: vec![Spectrum::ZERO; mesh.vertices.len()],
             unshot: vec![Spectrum::ZERO; mesh.vertices.len()],
-            exitance_unshot: mesh.patches.iter().map(|p| p.exitance != Spectrum::ZERO).collect(),
+            exitance_unshot: mesh
+                .patches
+                .iter()
+                .map(|p| p.exitance != Spectrum::ZERO)
+                .collect(),
         }
     }
 
     /// Unshot radiosity ΔB of a patch at one of its vertices.
     pub fn unshot_radiosity(&self, mesh: &Mesh, vertex: u32) -> Spectrum {
         let patch = mesh.vertices[vertex as usize].patch as usize;
-        let own = if self.exitance_unshot[patch] { mesh.patches[patch].exitance } else { Spectrum::ZERO };
+        let own = if self.exitance_unshot[patch] {
+            mesh.patches[patch].exitance
+        } else {
+            Spectrum::ZERO
+        };
         own + mesh.patches[patch].reflectance * self.unshot[vertex as usize]
     }
 
     /// Unshot power of a patch, in W times the square of the frame's scale.
     pub fn unshot_power(&self, mesh: &Mesh, patch: usize) -> Power {
         let of = &mesh.patches[patch];
-        let received: Power = of.vertices.iter().map(|v| self.unshot[*v as usize].as_dvec3() * mesh.weights[*v as usize]).sum();
-        let own = if self.exitance_unshot[patch] { of.exitance.as_dvec3() * of.area } else { Power::ZERO };
+        let received: Power = of
+            .vertices
+            .iter()
+            .map(|v| self.unshot[*v as usize].as_dvec3() * mesh.weights[*v as usize])
+            .sum();
+        let own = if self.exitance_unshot[patch] {
+            of.exitance.as_dvec3() * of.area
+        } else {
+            Power::ZERO
+        };
         own + of.reflectance.as_dvec3() * received
     }
 

@@ -89,14 +89,21 @@ impl Fans {
 
     /// Origin and targets of fan `i`.
     pub fn fan(&self, i: usize) -> (Vec3, impl ExactSizeIterator<Item = Vec3> + '_) {
-        let targets = self.range(i).map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
+        let targets = self
+            .range(i)
+            .map(|k| Vec3::new(self.x[k], self.y[k], self.z[k]));
         (self.origins[i], targets)
     }
 
-    /// The range of fan `i` in the target arrays.
+    /// The range of fan `i` in the target arrays; a mask has room for it.
     pub(crate) fn range(&self, i: usize) -> std::ops::Range<usize> {
         let end = self.starts.get(i + 1).map_or(self.x.len(), |&s| s as usize);
-        self.starts[i] as usize..end
+        let range = self.starts[i] as usize..end;
+        assert!(
+            range.len() <= MAX_FAN,
+            "a fan has at most {MAX_FAN} targets"
+        );
+        range
     }
 }
 

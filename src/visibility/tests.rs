@@ -154,6 +154,16 @@ fn degenerate_triangles_hit_nothing_and_harm_nothing() {
 }
 
 #[test]
+fn copies_of_a_triangle_are_one_occluder() {
+    let copies = Triangles {
+        indices: square().indices.repeat(1000),
+        ..square()
+    };
+    assert_occluded(&copies, vec3(0.5, 0.25, 1.0), vec3(0.5, 0.25, -1.0), true);
+    assert_occluded(&copies, vec3(1.5, 0.25, 1.0), vec3(1.5, 0.25, -1.0), false);
+}
+
+#[test]
 fn segments_that_cannot_be_traced_meet_nothing() {
     let good = vec3(0.5, 0.5, -1.0);
     for bad in [
@@ -182,7 +192,7 @@ fn a_bad_segment_leaves_its_neighbours_alone() {
     }
     fans.begin(vec3(f32::NAN, 0.25, 1.0));
     fans.push(vec3(0.5, 0.25, -1.0));
-    fans.begin(vec3(0.5, 0.25, 1.0));
+    fans.begin(vec3(0.5, 0.25, 1.0)); // and a fan without targets
     fans.begin(vec3(0.5, 0.25, 1.0));
     fans.push(vec3(0.5, 0.25, -1.0));
     let mut masks = Vec::new();

@@ -1,15 +1,15 @@
 //! All segments of a fan through the tree together.
 //!
 //! Because they share their origin, a box is moved to it once and a triangle is prepared once for all
-//! of them. An inner node is entered by the whole fan as soon as one segment enters it; in a leaf only
+//! of them; and because they head for one place, the nearer of two boxes is opened first. An inner node is entered by the whole fan as soon as one segment enters it; in a leaf only
 //! the segments that enter its box are tested. A box contains those of its descendants, and every
 //! operation of the box test is monotonic, also when rounded; so a segment that enters a leaf's box
 //! enters all boxes above, and its answer is the same in whatever company it travels.
 
 use super::lanes::Lanes;
-use super::probe::Probe;
+use super::probe::{Probe, Verdict};
 use super::tree::{Content, Node, Tree};
-use crate::visibility::{Fans, MAX_FAN, T_FAR, T_NEAR, traceable};
+use crate::visibility::{COORDINATE_LIMIT, Fans, MAX_FAN, T_FAR, T_NEAR, in_range};
 use glam::Vec3;
 
 /// Directions shorter than this along an axis count as this long: their inverse stays finite.
@@ -22,7 +22,10 @@ const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 struct Segments {
     direction: [[f32; MAX_FAN]; 3],
     inverse: [[f32; MAX_FAN]; 3],
+    length: [f32; MAX_FAN],
     origin: Vec3,
+    /// About where the segments go.
+    heading: Vec3,
     /// Which segments are not known to be occluded.
     active: u64,
 }
@@ -34,11 +37,13 @@ pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
     let mut segments = Segments {
         direction: [[0.0; MAX_FAN]; 3],
         inverse: [[0.0; MAX_FAN]; 3],
+        length: [0.0; MAX_FAN],
         origin: Vec3::ZERO,
+        heading: Vec3::ZERO,
         active: 0,
     };
     for fan in 0..fans.len() {
-        segments.fill(fans, fan);
+        segments.fill::<L>(fans, fan);
         let asked = segments.active;
         segments.traverse::<L>(tree, &mut stack);
         masks.push(asked & !segments.active);
@@ -48,7 +53,7 @@ pub fn occluded<L: Lanes>(tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
 impl Segments {
     /// Takes fan `fan`; segments that cannot be traced are left out.
     #[inline(always)]
-    fn fill(&mut self, fans: &Fans, fan: usize) {
+    fn fill<L: Lanes>(&mut self, fans: &Fans, fan: usize) {
         let range = fans.range(fan);
         let count = range.len();
         self.origin = fans.origins[fan];
@@ -62,10 +67,33 @@ impl Segments {
                 *inverse = 1.0 / if tiny { SHORTEST } else { *direction };
             }
         }
-        self.active = (0..count).fold(0, |active, i| {
-            let direction = Vec3::from_array([0, 1, 2].map(|axis| self.direction[axis][i]));
-            active | u64::from(traceable(self.origin, direction)) << i
-        });
+        for (i, length) in self.length[..count].iter_mut().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|axis| self.direction[axis][i]);
+            *length = (x * x + y * y + z * z).sqrt();
+        }
+        self.heading = match count {
+            0 => Vec3::ZERO,
+            n => self.direction(0) + self.direction(n - 1),
+        };
+        let unused = (MAX_FAN - count) as u32;
+        self.active = self.traceable::<L>() & u64::MAX.checked_shr(unused).unwrap_or(0);
+    }
+
+    /// Mask of the segments within range, as [`traceable`](crate::visibility::traceable) has it.
+    #[inline(always)]
+    fn traceable<L: Lanes>(&self) -> u64 {
+        if !in_range(self.origin) {
+            return 0;
+        }
+        let limit = L::splat(COORDINATE_LIMIT);
+        let mut mask = u64::MAX;
+        for row in &self.direction {
+            let groups = (0..MAX_FAN).step_by(L::WIDTH);
+            mask &= groups.fold(0, |row_mask, group| {
+                row_mask | u64::from(L::load(&row[group..]).abs().le(limit)) << group
+            });
+        }
+        mask
     }
 
     /// Clears the bits of occluded segments in `active`.
@@ -73,26 +101,28 @@ impl Segments {
     fn traverse<L: Lanes>(&mut self, tree: &Tree, stack: &mut Vec<u32>) {
         let Some(root) = &tree.root else { return };
         stack.clear();
-        self.visit::<L>(tree, root, stack);
+        stack.extend(self.visit::<L>(tree, root));
         while let Some(pair) = stack.pop() {
             let [left, right] = &tree.pairs[pair as usize].0;
-            self.visit::<L>(tree, right, stack);
-            self.visit::<L>(tree, left, stack);
+            let inner = (self.visit::<L>(tree, left), self.visit::<L>(tree, right));
             if self.active == 0 {
                 return;
+            }
+            match inner {
+                (Some(l), Some(r)) if self.ahead(left) <= self.ahead(right) => {
+                    stack.extend([r, l]);
+                }
+                (Some(l), Some(r)) => stack.extend([l, r]),
+                (one, other) => stack.extend(one.or(other)),
             }
         }
     }
 
-    /// Tests the triangles of a leaf, or puts off the children of an inner node, if a segment enters.
+    /// Tests the triangles of a leaf; gives the children of an inner node, if a segment enters it.
     #[inline(always)]
-    fn visit<L: Lanes>(&mut self, tree: &Tree, node: &Node, stack: &mut Vec<u32>) {
+    fn visit<L: Lanes>(&mut self, tree: &Tree, node: &Node) -> Option<u32> {
         match node.content() {
-            Content::Inner(pair) => {
-                if self.entering::<L>(node, true) != 0 {
-                    stack.push(pair);
-                }
-            }
+            Content::Inner(pair) => (self.entering::<L>(node, true) != 0).then_some(pair),
             Content::Leaf(triangles) => {
                 let entering = self.entering::<L>(node, false);
                 if entering != 0 {
@@ -100,8 +130,15 @@ impl Segments {
                         self.test::<L>(&Probe::new(corners, self.origin), entering);
                     }
                 }
+                None
             }
         }
+    }
+
+    /// How far ahead the middle of a box lies, up to a factor and a constant.
+    #[inline(always)]
+    fn ahead(&self, node: &Node) -> f32 {
+        (Vec3::from_array(node.min) + Vec3::from_array(node.max)).dot(self.heading)
     }
 
     /// Mask of the active segments that enter a box; if `any` will do, not all of them.
@@ -144,10 +181,29 @@ impl Segments {
             if candidates == 0 {
                 continue;
             }
-            let direction = [0, 1, 2].map(|axis| L::load(&self.direction[axis][group..]));
-            let crossed = probe.crossed(direction, L::splat(T_NEAR), L::splat(T_FAR));
+            let [x, y, z] = &self.direction;
+            let direction = [
+                L::load(&x[group..]),
+                L::load(&y[group..]),
+                L::load(&z[group..]),
+            ];
+            let length = L::load(&self.length[group..]);
+            let Verdict {
+                mut crossed,
+                doubtful,
+            } = probe.crossed(direction, length);
+            let mut doubtful = doubtful & candidates;
+            while doubtful != 0 {
+                let lane = doubtful.trailing_zeros();
+                crossed |= u32::from(probe.settle(self.direction(group + lane as usize))) << lane;
+                doubtful &= doubtful - 1;
+            }
             self.active &= !(u64::from(crossed & candidates) << group);
         }
+    }
+
+    fn direction(&self, segment: usize) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.direction[axis][segment]))
     }
 
     /// The bits of the active segments from `group` on, as many as there are lanes.

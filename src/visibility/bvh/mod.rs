@@ -2,15 +2,20 @@
 //!
 //! `tree` turns obvhs' binary tree into pairs of siblings, `probe` is the watertight test of a triangle
 //! seen from one origin, `fan` takes all segments of a fan through the tree together, in `lanes` of
-//! several numbers; `nearest` follows one ray to its first hit.
+//! several numbers; `nearest` follows one ray to its first hit. The traversal of fans is written once and
+//! compiled for several instruction sets (`x86`), of which `isa` chooses one at run time.
 
 mod fan;
+mod isa;
 mod lanes;
 mod nearest;
 mod probe;
 mod tree;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 use super::{EngineInfo, Fans, Hit, MAX_FAN, Ray, Triangles, Visibility, VisibilityError};
+use isa::Isa;
 use tree::Tree;
 
 /// Version of obvhs in `Cargo.toml`; the crate does not tell it.
@@ -20,14 +25,17 @@ const OBVHS_VERSION: &str = "0.4";
 #[derive(Debug)]
 pub struct Obvhs {
     tree: Tree,
+    isa: Isa,
 }
 
 impl Obvhs {
     /// Builds the tree, on one thread: its shape then depends on nothing but the triangles.
     pub fn new(triangles: &Triangles) -> Result<Self, VisibilityError> {
         triangles.validate()?;
+        let isa = *Isa::available().last().expect("the portable one");
         Ok(Self {
             tree: Tree::new(triangles),
+            isa,
         })
     }
 }
@@ -37,14 +45,14 @@ impl Visibility for Obvhs {
         EngineInfo {
             name: "obvhs",
             version: OBVHS_VERSION.to_owned(),
-            isa: "portable".to_owned(),
+            isa: self.isa.name().to_owned(),
             packet_width: MAX_FAN as u32,
         }
     }
 
     fn occluded(&self, fans: &Fans, masks: &mut Vec<u64>) {
         masks.clear();
-        fan::occluded::<lanes::Portable>(&self.tree, fans, masks);
+        self.isa.occluded(&self.tree, fans, masks);
     }
 
     fn nearest(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {

@@ -82,17 +82,14 @@ impl Search<'_> {
         let Some(crossing) = probe.crossing(self.ray.direction) else {
             return;
         };
-        let triangle = self.tree.indices[i];
-        let nearer = self.best.is_none_or(|best| {
-            crossing.t < best.t || (crossing.t == best.t && triangle < best.triangle)
-        });
-        if nearer {
-            self.best = Some(Hit {
-                t: crossing.t,
-                triangle,
-                u: crossing.u,
-                v: crossing.v,
-            });
+        let (t, triangle) = (crossing.t as f32, self.tree.indices[i]);
+        if !(t > 0.0 && t < f32::INFINITY) {
+            return;
+        }
+        let nearer = |best: Hit| t < best.t || (t == best.t && triangle < best.triangle);
+        if self.best.is_none_or(nearer) {
+            let (u, v) = (crossing.u as f32, crossing.v as f32);
+            self.best = Some(Hit { t, triangle, u, v });
         }
     }
 }

@@ -1,0 +1,7 @@
+//! The form factors of a point against closed forms, published values and what must hold for any polygons.
+
+mod catalogue;
+mod precision;
+mod quadrature;
+mod shapes;
+mod traps;
