@@ -1,0 +1,45 @@
+//! `radiosity render`.
+
+use super::{draft, names, radiosity, text};
+use std::path::Path;
+
+/// Width and height of a PNG file.
+fn size(path: &Path) -> (u32, u32) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("was written"));
+    let reader = png::Decoder::new(file).read_info().expect("is a PNG file");
+    (reader.info().width, reader.info().height)
+}
+
+const PICTURES: [&str; 4] = ["mesh.png", "shaded.exr", "shaded.png", "wireframe.png"];
+
+#[test]
+fn a_solution_is_drawn_from_elsewhere() {
+    let (folder, solved) = draft("geometry");
+    let output = folder.path().join("pictures");
+    let view = ["--eye", "-3,2,0.5", "--look-at", "0,0.2,0", "--fov", "50", "--width", "64", "--height", "48", "--exposure", "-1"];
+    radiosity(&[&["render", text(&solved), "-o", text(&output)], &view[..]].concat()).assert_success();
+    assert_eq!(names(&output), PICTURES);
+    assert_eq!(size(&output.join("shaded.png")), (64, 48));
+}
+
+#[test]
+fn the_scene_s_own_camera_draws_beside_the_solution() {
+    let (_folder, solved) = draft("geometry");
+    radiosity(&["render", text(&solved), "--camera", "front", "--width", "40", "--height", "40"]).assert_success();
+    assert!(PICTURES.iter().all(|name| names(&solved).iter().any(|n| n == name)));
+    assert_eq!(size(&solved.join("wireframe.png")), (40, 40));
+}
+
+#[test]
+fn a_view_that_cannot_be_is_refused() {
+    let (_folder, solved) = draft("geometry");
+    let refused = |arguments: &[&str], words: &[&str]| {
+        radiosity(&[&["render", text(&solved)], arguments].concat()).assert_refused(3, words);
+    };
+    refused(&["--camera", "back"], &["`back`", "front"]);
+    refused(&["--fov", "180"], &["180"]);
+    refused(&["--eye", "0,3,0", "--look-at", "0,0,0"], &["up direction"]);
+    let usage = radiosity(&["render", text(&solved), "--eye", "1,2"]);
+    assert_eq!(usage.code, Some(2), "{}", usage.err);
+    assert!(usage.err.contains("three numbers"), "{}", usage.err);
+}

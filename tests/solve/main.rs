@@ -1,0 +1,46 @@
+//! What a solve answers, against closed forms, invariants and an independent path tracer.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod conforming;
+mod contact;
+mod energy;
+mod exact_floor;
+mod furnace;
+mod path_traced;
+mod places;
+mod stopping;
+mod threads;
+mod variants;
+
+use common::scene_folder;
+use radiosity::scene::Scene;
+use radiosity::solution::Solution;
+use radiosity::solver::{Options, Preset, Silent};
+use radiosity::visibility::EngineChoice;
+use radiosity::{Settings, solve};
+
+/// The engines that are there: obvhs always, Embree if it was built in.
+fn engines() -> Vec<EngineChoice> {
+    if cfg!(embree) { vec![EngineChoice::Embree, EngineChoice::Obvhs] } else { vec![EngineChoice::Obvhs] }
+}
+
+/// A scene of the project.
+fn bundled(name: &str) -> Scene {
+    Scene::load(&scene_folder(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Solves with the given options, on the engine and threads that the machine gives.
+fn solved(scene: &Scene, options: Options) -> Solution {
+    solved_by(scene, options, EngineChoice::Auto, 0)
+}
+
+fn solved_by(scene: &Scene, options: Options, engine: EngineChoice, threads: usize) -> Solution {
+    let settings = Settings { options, engine, threads };
+    solve(scene, &settings, &mut Silent).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn draft() -> Options {
+    Preset::Draft.options()
+}
