@@ -36,12 +36,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let request = request()?;
     let (scene, samples) = task(&request)?;
     println!("{} ({} points)", scene.name, samples.len());
-    println!("| preset | elements | vertices | Mrays | seconds | nRMS % | rmsRel % | bias % | max % | missed |");
+    println!(
+        "| preset | elements | vertices | Mrays | seconds | nRMS % | rmsRel % | bias % | max % | missed |"
+    );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
     for preset in &request.presets {
         let options = preset.options();
-        let options = Options { tolerance: request.tolerance.unwrap_or(options.tolerance), ..options };
-        let settings = Settings { options, engine: request.engine, threads: request.threads };
+        let options = Options {
+            tolerance: request.tolerance.unwrap_or(options.tolerance),
+            ..options
+        };
+        let settings = Settings {
+            options,
+            engine: request.engine,
+            threads: request.threads,
+        };
         let solution = solve(&scene, &settings, &mut Silent)?;
         let deviation = Deviation::of(&solution, &samples);
         let report = &solution.report;
@@ -65,7 +74,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn task(request: &Request) -> Result<(Scene, Vec<Sample>), Box<dyn Error>> {
     match &request.files[..] {
-        [] if request.emission => Ok((Scene::load(&common::scene_folder("emission"))?, common::closed_form::emission_floor())),
+        [] if request.emission => Ok((
+            Scene::load(&common::scene_folder("emission"))?,
+            common::closed_form::emission_floor(),
+        )),
         [scene, points] if !request.emission => Ok((Scene::load(scene)?, reference::read(points)?)),
         _ => Err("expected SCENE POINTS.csv, or --emission".into()),
     }
@@ -75,7 +87,11 @@ fn request() -> Result<Request, Box<dyn Error>> {
     let mut request = Request::default();
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
-        let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value"));
+        let mut value = || {
+            arguments
+                .next()
+                .ok_or_else(|| format!("{argument} needs a value"))
+        };
         match argument.as_str() {
             "--emission" => request.emission = true,
             "--preset" => request.presets.push(preset(&value()?)?),
@@ -97,6 +113,8 @@ fn preset(name: &str) -> Result<Preset, String> {
         "draft" => Ok(Preset::Draft),
         "standard" => Ok(Preset::Standard),
         "accurate" => Ok(Preset::Accurate),
-        _ => Err(format!("unknown preset {name}; there are draft, standard and accurate")),
+        _ => Err(format!(
+            "unknown preset {name}; there are draft, standard and accurate"
+        )),
     }
 }

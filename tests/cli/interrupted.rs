@@ -14,22 +14,44 @@ fn an_interrupted_solve_writes_the_solution_so_far_and_ends_with_130() {
     let output = folder.path().join("solved");
     let scene = scene("cornell-box");
     // A reference that would take minutes.
-    let arguments = ["solve", text(&scene), "-o", text(&output), "--preset", "accurate", "--eps-d", "0.01", "--no-pictures"];
-    let child = command().args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("can be started");
+    let arguments = [
+        "solve",
+        text(&scene),
+        "-o",
+        text(&output),
+        "--preset",
+        "accurate",
+        "--eps-d",
+        "0.01",
+        "--no-pictures",
+    ];
+    let child = command()
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("can be started");
     // The folder is made just before interrupts are caught.
     let started = Instant::now();
     while !output.exists() && started.elapsed() < Duration::from_secs(60) {
         sleep(Duration::from_millis(20));
     }
     sleep(Duration::from_secs(1));
-    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
     assert!(kill.expect("can be started").success());
 
     let run: Run = child.wait_with_output().expect("ends").into();
     assert_eq!(run.code, Some(130), "{}", run.err);
-    assert!(run.err.contains("writing the solution so far"), "{}", run.err);
+    assert!(
+        run.err.contains("writing the solution so far"),
+        "{}",
+        run.err
+    );
     assert!(run.out.contains("interrupted"), "{}", run.out);
-    let solution = Solution::read(&output.join("solution.rad")).unwrap_or_else(|error| panic!("{error}"));
+    let solution =
+        Solution::read(&output.join("solution.rad")).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(solution.report.stop_reason, StopReason::Interrupted);
     assert!(output.join("report.json").exists());
     radiosity(&["render", text(&output), "--width", "32", "--height", "32"]).assert_success();

@@ -21,7 +21,11 @@ struct Run {
 impl From<Output> for Run {
     fn from(output: Output) -> Self {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("prints UTF-8");
-        Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+        Self {
+            code: output.status.code(),
+            out: text(output.stdout),
+            err: text(output.stderr),
+        }
     }
 }
 
@@ -33,7 +37,11 @@ impl Run {
     /// The run failed with this code and a message of one line that holds all of these words.
     fn assert_refused(&self, code: i32, words: &[&str]) {
         assert_eq!(self.code, Some(code), "{}", self.err);
-        let message = self.err.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
+        let message = self
+            .err
+            .lines()
+            .find(|line| line.starts_with("error: "))
+            .unwrap_or_default();
         for word in words {
             assert!(message.contains(word), "`{word}` is not in: {}", self.err);
         }
@@ -49,12 +57,18 @@ fn command() -> Command {
 
 /// Runs the command to its end.
 fn radiosity<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Run {
-    command().args(arguments).output().expect("can be started").into()
+    command()
+        .args(arguments)
+        .output()
+        .expect("can be started")
+        .into()
 }
 
 /// A scene of the project.
 fn scene(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name)
 }
 
 fn text(path: &Path) -> &str {
@@ -69,7 +83,8 @@ fn folder() -> TempDir {
 /// Writes an OBJ file of one floor of 1 m, and says where it is.
 fn floor(folder: &TempDir) -> PathBuf {
     let path = folder.path().join("floor.obj");
-    std::fs::write(&path, "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n").expect("can be written");
+    std::fs::write(&path, "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n")
+        .expect("can be written");
     path
 }
 
@@ -77,14 +92,26 @@ fn floor(folder: &TempDir) -> PathBuf {
 fn draft(name: &str) -> (TempDir, PathBuf) {
     let folder = folder();
     let output = folder.path().join("solved");
-    radiosity(&["solve", text(&scene(name)), "-o", text(&output), "--preset", "draft", "--no-pictures"]).assert_success();
+    radiosity(&[
+        "solve",
+        text(&scene(name)),
+        "-o",
+        text(&output),
+        "--preset",
+        "draft",
+        "--no-pictures",
+    ])
+    .assert_success();
     (folder, output)
 }
 
 /// The names in a folder, sorted.
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("is a folder");
-    let mut names: Vec<String> = entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = entries
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort();
     names
 }

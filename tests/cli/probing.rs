@@ -11,20 +11,50 @@ const POINTS: &str = "name,x,y,z,nx,ny,nz,note\n\
                       below,150,0,400,0,-1,0,\n";
 
 fn rows(table: &str) -> Vec<Vec<String>> {
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(table.as_bytes());
-    reader.records().map(|record| record.expect("is a table").iter().map(str::to_owned).collect()).collect()
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(table.as_bytes());
+    reader
+        .records()
+        .map(|record| {
+            record
+                .expect("is a table")
+                .iter()
+                .map(str::to_owned)
+                .collect()
+        })
+        .collect()
 }
 
 fn assert_probed(table: &str) {
     let rows = rows(table);
-    let light = ["radiosity_r", "radiosity_g", "radiosity_b", "irradiance_r", "irradiance_g", "irradiance_b"];
-    assert_eq!(rows[0][..8], ["name", "x", "y", "z", "nx", "ny", "nz", "note"]);
+    let light = [
+        "radiosity_r",
+        "radiosity_g",
+        "radiosity_b",
+        "irradiance_r",
+        "irradiance_g",
+        "irradiance_b",
+    ];
+    assert_eq!(
+        rows[0][..8],
+        ["name", "x", "y", "z", "nx", "ny", "nz", "note"]
+    );
     assert_eq!(rows[0][8..], light);
-    assert_eq!(rows[1][..8], ["floor", "150", "0", "400", "0", "1", "0", "kept, as it is"]);
-    let numbers: Vec<f64> = rows[1][8..].iter().map(|cell| cell.parse().expect("is a number")).collect();
+    assert_eq!(
+        rows[1][..8],
+        ["floor", "150", "0", "400", "0", "1", "0", "kept, as it is"]
+    );
+    let numbers: Vec<f64> = rows[1][8..]
+        .iter()
+        .map(|cell| cell.parse().expect("is a number"))
+        .collect();
     for (channel, reflectance) in [0.725, 0.71, 0.68].into_iter().enumerate() {
         let (radiosity, irradiance) = (numbers[channel], numbers[channel + 3]);
-        assert!(irradiance > 0.0 && (radiosity / irradiance / reflectance - 1.0).abs() < 1e-5, "{numbers:?}");
+        assert!(
+            irradiance > 0.0 && (radiosity / irradiance / reflectance - 1.0).abs() < 1e-5,
+            "{numbers:?}"
+        );
     }
     for missed in &rows[2..] {
         assert!(missed[8..].iter().all(String::is_empty), "{missed:?}");
@@ -41,7 +71,11 @@ fn points_get_their_light_and_other_columns_stay() {
     let run = radiosity(&["probe", text(&solved), text(&points)]);
     run.assert_success();
     assert_probed(&run.out);
-    assert!(run.err.contains("2 points lie on no surface"), "{}", run.err);
+    assert!(
+        run.err.contains("2 points lie on no surface"),
+        "{}",
+        run.err
+    );
 
     let output = folder.path().join("lit.csv");
     let run = radiosity(&["probe", text(&solved), text(&points), "-o", text(&output)]);
@@ -61,11 +95,18 @@ fn tables_without_places_are_refused_with_their_line() {
         assert_eq!(run.out, "", "half a table");
     };
     refused("x,y,z\n0,0,0\n", &["points.csv:1", "`nx`"]);
-    refused("x,y,z,nx,ny,nz\n0,0,0,0,1,0\n0,0,high,0,1,0\n", &["points.csv:3", "`high`", "column z"]);
-    refused("x,y,z,nx,ny,nz\n0,0,inf,0,1,0\n", &["points.csv:2", "`inf`"]);
+    refused(
+        "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n0,0,high,0,1,0\n",
+        &["points.csv:3", "`high`", "column z"],
+    );
+    refused(
+        "x,y,z,nx,ny,nz\n0,0,inf,0,1,0\n",
+        &["points.csv:2", "`inf`"],
+    );
     refused("x,y,z,nx,ny,nz\n0,0\n", &["points.csv", "line: 2"]);
     refused("", &["points.csv:1"]);
     let missing = folder.path().join("none.csv");
     radiosity(&["probe", text(&solved), text(&missing)]).assert_refused(3, &["none.csv"]);
-    radiosity(&["probe", text(Path::new("/nowhere")), text(&missing)]).assert_refused(3, &["/nowhere/solution.rad"]);
+    radiosity(&["probe", text(Path::new("/nowhere")), text(&missing)])
+        .assert_refused(3, &["/nowhere/solution.rad"]);
 }

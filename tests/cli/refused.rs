@@ -7,17 +7,33 @@ use std::time::{Duration, Instant};
 #[test]
 fn a_path_that_is_not_there_is_bad_input() {
     let folder = folder();
-    for command in [&["info"][..], &["solve", "-o", text(&folder.path().join("out"))]] {
-        radiosity(&[command, &["no/such/scene.obj"]].concat()).assert_refused(3, &["no/such/scene.obj", "no such file"]);
+    for command in [
+        &["info"][..],
+        &["solve", "-o", text(&folder.path().join("out"))],
+    ] {
+        radiosity(&[command, &["no/such/scene.obj"]].concat())
+            .assert_refused(3, &["no/such/scene.obj", "no such file"]);
     }
-    assert!(names(folder.path()).is_empty(), "no folder for results that will not come");
+    assert!(
+        names(folder.path()).is_empty(),
+        "no folder for results that will not come"
+    );
 }
 
 #[test]
 fn a_scene_whose_geometry_is_missing_names_the_file() {
     let folder = folder();
-    fs::write(folder.path().join("scene.toml"), "geometry = \"gone.obj\"\n").expect("can be written");
-    let run = radiosity(&["solve", text(folder.path()), "-o", text(&folder.path().join("out"))]);
+    fs::write(
+        folder.path().join("scene.toml"),
+        "geometry = \"gone.obj\"\n",
+    )
+    .expect("can be written");
+    let run = radiosity(&[
+        "solve",
+        text(folder.path()),
+        "-o",
+        text(&folder.path().join("out")),
+    ]);
     run.assert_refused(3, &["gone.obj"]);
 }
 
@@ -26,7 +42,8 @@ fn a_scene_without_surfaces_is_bad_input() {
     let folder = folder();
     let path = folder.path().join("empty.obj");
     fs::write(&path, "v 0 0 0\nv 1 0 0\n").expect("can be written");
-    radiosity(&["solve", text(&path), "-o", text(&folder.path().join("out"))]).assert_refused(3, &["empty.obj"]);
+    radiosity(&["solve", text(&path), "-o", text(&folder.path().join("out"))])
+        .assert_refused(3, &["empty.obj"]);
 }
 
 #[test]
@@ -36,18 +53,38 @@ fn an_output_that_cannot_be_written_is_found_out_before_the_solve() {
     fs::write(&file, "in the way").expect("can be written");
     let started = Instant::now();
     for output in [file.clone(), file.join("out")] {
-        let run = radiosity(&["solve", text(&scene("cornell-box")), "-o", text(&output), "--preset", "accurate"]);
+        let run = radiosity(&[
+            "solve",
+            text(&scene("cornell-box")),
+            "-o",
+            text(&output),
+            "--preset",
+            "accurate",
+        ]);
         run.assert_refused(1, &["cannot write to", text(&file)]);
     }
-    assert!(started.elapsed() < Duration::from_secs(10), "an accurate solve takes minutes");
-    assert_eq!(fs::read_to_string(&file).expect("is still there"), "in the way");
+    assert!(
+        started.elapsed() < Duration::from_secs(10),
+        "an accurate solve takes minutes"
+    );
+    assert_eq!(
+        fs::read_to_string(&file).expect("is still there"),
+        "in the way"
+    );
 }
 
 #[test]
 #[cfg(not(embree))]
 fn embree_is_refused_with_advice_where_it_was_not_built() {
     let folder = folder();
-    let run = radiosity(&["solve", text(&scene("geometry")), "-o", text(folder.path()), "--engine", "embree"]);
+    let run = radiosity(&[
+        "solve",
+        text(&scene("geometry")),
+        "-o",
+        text(folder.path()),
+        "--engine",
+        "embree",
+    ]);
     run.assert_refused(1, &["built without Embree", "obvhs"]);
 }
 
@@ -55,8 +92,22 @@ fn embree_is_refused_with_advice_where_it_was_not_built() {
 #[cfg(embree)]
 fn embree_solves_where_it_was_built() {
     let folder = folder();
-    let arguments = ["--engine", "embree", "--preset", "draft", "--no-pictures", "--max-shots", "1"];
-    let run = radiosity(&[&["solve", text(&scene("geometry")), "-o", text(folder.path())], &arguments[..]].concat());
+    let arguments = [
+        "--engine",
+        "embree",
+        "--preset",
+        "draft",
+        "--no-pictures",
+        "--max-shots",
+        "1",
+    ];
+    let run = radiosity(
+        &[
+            &["solve", text(&scene("geometry")), "-o", text(folder.path())],
+            &arguments[..],
+        ]
+        .concat(),
+    );
     run.assert_success();
     assert!(run.out.contains("by embree"), "{}", run.out);
 }
@@ -84,6 +135,10 @@ fn wrong_usage_ends_with_2() {
         let name = flags[0].trim_end_matches("=-1");
         assert!(run.err.contains(name), "{flags:?}: {}", run.err);
     }
-    assert_eq!(radiosity(&["solve", text(&geometry)]).code, Some(2), "there is no output");
+    assert_eq!(
+        radiosity(&["solve", text(&geometry)]).code,
+        Some(2),
+        "there is no output"
+    );
     assert!(names(folder.path()).is_empty());
 }

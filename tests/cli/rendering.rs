@@ -16,8 +16,22 @@ const PICTURES: [&str; 4] = ["mesh.png", "shaded.exr", "shaded.png", "wireframe.
 fn a_solution_is_drawn_from_elsewhere() {
     let (folder, solved) = draft("geometry");
     let output = folder.path().join("pictures");
-    let view = ["--eye", "-3,2,0.5", "--look-at", "0,0.2,0", "--fov", "50", "--width", "64", "--height", "48", "--exposure", "-1"];
-    radiosity(&[&["render", text(&solved), "-o", text(&output)], &view[..]].concat()).assert_success();
+    let view = [
+        "--eye",
+        "-3,2,0.5",
+        "--look-at",
+        "0,0.2,0",
+        "--fov",
+        "50",
+        "--width",
+        "64",
+        "--height",
+        "48",
+        "--exposure",
+        "-1",
+    ];
+    radiosity(&[&["render", text(&solved), "-o", text(&output)], &view[..]].concat())
+        .assert_success();
     assert_eq!(names(&output), PICTURES);
     assert_eq!(size(&output.join("shaded.png")), (64, 48));
 }
@@ -25,8 +39,22 @@ fn a_solution_is_drawn_from_elsewhere() {
 #[test]
 fn the_scene_s_own_camera_draws_beside_the_solution() {
     let (_folder, solved) = draft("geometry");
-    radiosity(&["render", text(&solved), "--camera", "front", "--width", "40", "--height", "40"]).assert_success();
-    assert!(PICTURES.iter().all(|name| names(&solved).iter().any(|n| n == name)));
+    radiosity(&[
+        "render",
+        text(&solved),
+        "--camera",
+        "front",
+        "--width",
+        "40",
+        "--height",
+        "40",
+    ])
+    .assert_success();
+    assert!(
+        PICTURES
+            .iter()
+            .all(|name| names(&solved).iter().any(|n| n == name))
+    );
     assert_eq!(size(&solved.join("wireframe.png")), (40, 40));
 }
 

@@ -13,12 +13,34 @@ fn report(folder: &Path) -> Value {
 #[test]
 fn a_solve_leaves_solution_mesh_pictures_and_report() {
     let folder = folder();
-    let run = radiosity(&["solve", text(&scene("geometry")), "-o", text(folder.path()), "--preset", "draft", "--max-shots", "1"]);
+    let run = radiosity(&[
+        "solve",
+        text(&scene("geometry")),
+        "-o",
+        text(folder.path()),
+        "--preset",
+        "draft",
+        "--max-shots",
+        "1",
+    ]);
     run.assert_success();
-    let expected = ["mesh.png", "report.json", "shaded.exr", "shaded.png", "solution.ply", "solution.rad", "wireframe.png"];
+    let expected = [
+        "mesh.png",
+        "report.json",
+        "shaded.exr",
+        "shaded.png",
+        "solution.ply",
+        "solution.rad",
+        "wireframe.png",
+    ];
     assert_eq!(names(folder.path()), expected);
-    assert!(run.out.contains("Geometry") && run.out.contains("largest number of shots"), "{}", run.out);
-    let stored = Solution::read(&folder.path().join("solution.rad")).unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        run.out.contains("Geometry") && run.out.contains("largest number of shots"),
+        "{}",
+        run.out
+    );
+    let stored = Solution::read(&folder.path().join("solution.rad"))
+        .unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(stored.report.shots, 1);
 }
 
@@ -27,8 +49,21 @@ fn the_report_holds_every_figure() {
     let (_folder, solved) = draft("cornell-box");
     let report = report(&solved);
     let keys = [
-        "scene", "engine", "threads", "input_patches", "shots", "meshing_shots", "max_depth", "elements", "vertices", "rays",
-        "seconds", "stop_reason", "power", "power_rgb", "options",
+        "scene",
+        "engine",
+        "threads",
+        "input_patches",
+        "shots",
+        "meshing_shots",
+        "max_depth",
+        "elements",
+        "vertices",
+        "rays",
+        "seconds",
+        "stop_reason",
+        "power",
+        "power_rgb",
+        "options",
     ];
     for key in keys {
         assert!(!report[key].is_null(), "no {key}");
@@ -36,8 +71,14 @@ fn the_report_holds_every_figure() {
     for (part, keys) in [
         ("engine", &["name", "version", "isa", "packet_width"][..]),
         ("seconds", &["load", "build", "solve", "write"]),
-        ("power", &["emitted", "absorbed", "escaped", "unshot", "residual"]),
-        ("power_rgb", &["emitted", "absorbed", "escaped", "unshot", "residual"]),
+        (
+            "power",
+            &["emitted", "absorbed", "escaped", "unshot", "residual"],
+        ),
+        (
+            "power_rgb",
+            &["emitted", "absorbed", "escaped", "unshot", "residual"],
+        ),
     ] {
         for key in keys {
             assert!(!report[part][key].is_null(), "no {part}.{key}");
@@ -49,15 +90,36 @@ fn the_report_holds_every_figure() {
     assert_eq!(report["options"]["tolerance"], 0.005, "the draft's");
     let emitted = report["power"]["emitted"].as_f64().expect("is a number");
     let expected = 3.0 * std::f64::consts::PI * 0.130 * 0.105;
-    assert!((emitted / expected - 1.0).abs() < 1e-6, "{emitted} W, where 130 mm by 105 mm of radiance 1 give {expected}");
+    assert!(
+        (emitted / expected - 1.0).abs() < 1e-6,
+        "{emitted} W, where 130 mm by 105 mm of radiance 1 give {expected}"
+    );
 }
 
 #[test]
 fn threads_and_options_are_those_asked_for() {
     let folder = folder();
     let output = folder.path().join("new/and/deep");
-    let arguments = ["--preset", "draft", "--no-pictures", "--threads", "1", "--engine", "obvhs", "--max-shots", "3", "--eps-d", "0.5"];
-    let run = radiosity(&[&["solve", text(&scene("cornell-box")), "-o", text(&output)], &arguments[..]].concat());
+    let arguments = [
+        "--preset",
+        "draft",
+        "--no-pictures",
+        "--threads",
+        "1",
+        "--engine",
+        "obvhs",
+        "--max-shots",
+        "3",
+        "--eps-d",
+        "0.5",
+    ];
+    let run = radiosity(
+        &[
+            &["solve", text(&scene("cornell-box")), "-o", text(&output)],
+            &arguments[..],
+        ]
+        .concat(),
+    );
     run.assert_success();
     let report = report(&output);
     assert_eq!(report["threads"], 1);
@@ -65,26 +127,54 @@ fn threads_and_options_are_those_asked_for() {
     assert_eq!(report["shots"], 3);
     assert_eq!(report["stop_reason"], "max-shots");
     assert_eq!(report["options"]["epsilon_d"], 0.5);
-    assert_eq!(names(&output), ["report.json", "solution.ply", "solution.rad"]);
+    assert_eq!(
+        names(&output),
+        ["report.json", "solution.ply", "solution.rad"]
+    );
 }
 
 #[test]
 fn without_an_emitter_all_is_black_and_a_warning_says_why() {
     let folder = folder();
-    let run = radiosity(&["solve", text(&floor(&folder)), "-o", text(&folder.path().join("out")), "--preset", "draft"]);
+    let run = radiosity(&[
+        "solve",
+        text(&floor(&folder)),
+        "-o",
+        text(&folder.path().join("out")),
+        "--preset",
+        "draft",
+    ]);
     run.assert_success();
     assert!(run.err.contains("no surface emits"), "{}", run.err);
     assert!(run.out.contains("nothing emits"), "{}", run.out);
-    assert_eq!(report(&folder.path().join("out"))["stop_reason"], "no-emitter");
-    let stored = Solution::read(&folder.path().join("out/solution.rad")).unwrap_or_else(|error| panic!("{error}"));
-    assert!(stored.light.irradiance.iter().all(|e| *e == glam::Vec3::ZERO));
+    assert_eq!(
+        report(&folder.path().join("out"))["stop_reason"],
+        "no-emitter"
+    );
+    let stored = Solution::read(&folder.path().join("out/solution.rad"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        stored
+            .light
+            .irradiance
+            .iter()
+            .all(|e| *e == glam::Vec3::ZERO)
+    );
 }
 
 #[test]
 fn info_says_what_a_scene_holds() {
     let run = radiosity(&["info", text(&scene("cornell-box"))]);
     run.assert_success();
-    for words in ["Cornell box", "0.001 m", "polygons      19", "19 (0 triangles, 19 quads)", "emitters      1", "front 768x768", "red"] {
+    for words in [
+        "Cornell box",
+        "0.001 m",
+        "polygons      19",
+        "19 (0 triangles, 19 quads)",
+        "emitters      1",
+        "front 768x768",
+        "red",
+    ] {
         assert!(run.out.contains(words), "`{words}` is not in:\n{}", run.out);
     }
 }

@@ -26,18 +26,33 @@ pub fn between_opposite_squares() -> f64 {
 /// the way, and the only bounce is this one.
 pub fn emission_floor() -> Vec<Sample> {
     let light = |x: f64| {
-        let corners = [(0.0, -0.5), (1.0, -0.5), (1.0, 0.5), (0.0, 0.5)].map(|(y, z)| DVec3::new(x, y, z));
+        let corners =
+            [(0.0, -0.5), (1.0, -0.5), (1.0, 0.5), (0.0, 0.5)].map(|(y, z)| DVec3::new(x, y, z));
         // The left one faces +x, the right one -x.
-        if x < 0.0 { corners } else { [3, 2, 1, 0].map(|i| corners[i]) }
+        if x < 0.0 {
+            corners
+        } else {
+            [3, 2, 1, 0].map(|i| corners[i])
+        }
     };
     let lights = [light(-2.0), light(2.0)];
     // Steps that are no multiple of any element's size.
-    let places = (0..39).flat_map(|i| (0..39).map(move |j| (-1.95 + 0.1026 * f64::from(i), -1.95 + 0.1026 * f64::from(j))));
+    let places = (0..39).flat_map(|i| {
+        (0..39).map(move |j| (-1.95 + 0.1026 * f64::from(i), -1.95 + 0.1026 * f64::from(j)))
+    });
     let far = |&(x, z): &(f64, f64)| (2.0 - x.abs()).hypot((z.abs() - 0.5).max(0.0)) >= 0.1;
     let sample = |(x, z)| {
         let point = DVec3::new(x, 0.0, z);
-        let factor: f64 = lights.iter().map(|light| to_polygon(point, DVec3::Y, light)).sum();
-        Sample { point, normal: DVec3::Y, irradiance: DVec3::splat(PI * factor), standard_error: DVec3::ZERO }
+        let factor: f64 = lights
+            .iter()
+            .map(|light| to_polygon(point, DVec3::Y, light))
+            .sum();
+        Sample {
+            point,
+            normal: DVec3::Y,
+            irradiance: DVec3::splat(PI * factor),
+            standard_error: DVec3::ZERO,
+        }
     };
     places.filter(far).map(sample).collect()
 }

@@ -9,5 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The folder of a scene of the project.
 pub fn scene_folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(name)
 }

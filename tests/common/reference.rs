@@ -42,6 +42,14 @@ pub fn read(path: &Path) -> Result<Vec<Sample>, Box<dyn Error>> {
     reader.into_records().map(sample).collect()
 }
 
+/// A table of the tests.
+pub fn table(name: &str) -> Vec<Sample> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name);
+    read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
 /// Relative errors are asked of samples above this fraction of the mean reference: in an umbra that only third
 /// reflections reach, a ten-thousandth of the mean is an error that nobody sees, yet a hundred times what is there.
 pub const DIM: f64 = 0.01;
@@ -67,7 +75,11 @@ impl Deviation {
     /// Of `solution` from `samples`.
     pub fn of(solution: &Solution, samples: &[Sample]) -> Self {
         let prober = Prober::new(solution);
-        let mean = samples.iter().map(|s| s.irradiance.element_sum() / 3.0).sum::<f64>() / samples.len() as f64;
+        let mean = samples
+            .iter()
+            .map(|s| s.irradiance.element_sum() / 3.0)
+            .sum::<f64>()
+            / samples.len() as f64;
         let (mut absolute, mut relative) = (Moments::default(), Moments::default());
         let (mut missed, mut max_rel) = (0, 0f64);
         for sample in samples {
@@ -77,7 +89,11 @@ impl Deviation {
             };
             let errors = probe.irradiance.as_dvec3() - sample.irradiance;
             for channel in 0..3 {
-                let (reference, error, noise) = (sample.irradiance[channel], errors[channel], sample.standard_error[channel]);
+                let (reference, error, noise) = (
+                    sample.irradiance[channel],
+                    errors[channel],
+                    sample.standard_error[channel],
+                );
                 absolute.add(error, noise);
                 if reference > DIM * mean {
                     relative.add(error / reference, noise / reference);
@@ -85,7 +101,13 @@ impl Deviation {
                 }
             }
         }
-        Self { missed, n_rms: absolute.rms() / mean, rms_rel: relative.rms(), bias: absolute.mean() / mean, max_rel }
+        Self {
+            missed,
+            n_rms: absolute.rms() / mean,
+            rms_rel: relative.rms(),
+            bias: absolute.mean() / mean,
+            max_rel,
+        }
     }
 }
 

@@ -39,13 +39,20 @@ pub fn add_quad(scene: &mut Scene, material: u32, corners: [DVec3; 4]) {
     };
     let corners = Corners::Quad(corners.map(|corner| index(scene, corner)));
     let polygon = scene.input_polygons as u32;
-    scene.surfaces.push(Surface { corners, material, polygon, sides: Sides::Front });
+    scene.surfaces.push(Surface {
+        corners,
+        material,
+        polygon,
+        sides: Sides::Front,
+    });
     scene.input_polygons += 1;
 }
 
 /// Adds the sides of a cuboid, which radiate outwards; or inwards, as a room.
 pub fn add_cuboid(scene: &mut Scene, material: u32, [low, high]: [DVec3; 2], inwards: bool) {
-    let at = |x: usize, y: usize, z: usize| DVec3::new([low.x, high.x][x], [low.y, high.y][y], [low.z, high.z][z]);
+    let at = |x: usize, y: usize, z: usize| {
+        DVec3::new([low.x, high.x][x], [low.y, high.y][y], [low.z, high.z][z])
+    };
     let outwards = [
         [at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)],
         [at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)],
@@ -55,13 +62,32 @@ pub fn add_cuboid(scene: &mut Scene, material: u32, [low, high]: [DVec3; 2], inw
         [at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)],
     ];
     for [a, b, c, d] in outwards {
-        add_quad(scene, material, if inwards { [d, c, b, a] } else { [a, b, c, d] });
+        add_quad(
+            scene,
+            material,
+            if inwards { [d, c, b, a] } else { [a, b, c, d] },
+        );
     }
 }
 
 /// Adds a horizontal rectangle from `low` to `high` at a height; it faces up, or down.
-pub fn add_level(scene: &mut Scene, material: u32, [low, high]: [[f64; 2]; 2], height: f64, upwards: bool) {
+pub fn add_level(
+    scene: &mut Scene,
+    material: u32,
+    [low, high]: [[f64; 2]; 2],
+    height: f64,
+    upwards: bool,
+) {
     let at = |x: f64, z: f64| DVec3::new(x, height, z);
-    let [a, b, c, d] = [at(low[0], low[1]), at(low[0], high[1]), at(high[0], high[1]), at(high[0], low[1])];
-    add_quad(scene, material, if upwards { [a, b, c, d] } else { [d, c, b, a] });
+    let [a, b, c, d] = [
+        at(low[0], low[1]),
+        at(low[0], high[1]),
+        at(high[0], high[1]),
+        at(high[0], low[1]),
+    ];
+    add_quad(
+        scene,
+        material,
+        if upwards { [a, b, c, d] } else { [d, c, b, a] },
+    );
 }

@@ -13,7 +13,8 @@ type Sides = HashMap<(u32, u32), usize>;
 fn triangles(lit: &LitMesh, polygons: usize) -> Vec<Vec<[u32; 3]>> {
     let mut of = vec![Vec::new(); polygons];
     for triangle in &lit.triangles {
-        of[triangle.polygon as usize].push(triangle.vertices.map(|v| lit.vertices[v as usize].position));
+        of[triangle.polygon as usize]
+            .push(triangle.vertices.map(|v| lit.vertices[v as usize].position));
     }
     of
 }
@@ -30,7 +31,11 @@ fn sides(triangles: &[[u32; 3]]) -> Sides {
 
 /// The sides that no triangle of the same polygon has on its other side.
 fn open_sides(sides: &Sides) -> Vec<(u32, u32)> {
-    sides.keys().filter(|(a, b)| !sides.contains_key(&(*b, *a))).copied().collect()
+    sides
+        .keys()
+        .filter(|(a, b)| !sides.contains_key(&(*b, *a)))
+        .copied()
+        .collect()
 }
 
 /// Distance of `point` from the segment, and whether it is nearer to an end than to all else.
@@ -41,7 +46,9 @@ fn distance(point: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 
 fn outline(scene: &Scene, polygon: usize) -> Vec<[DVec3; 2]> {
     let corners: Vec<DVec3> = scene.positions(&scene.surfaces[polygon]).collect();
-    (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]).collect()
+    (0..corners.len())
+        .map(|i| [corners[i], corners[(i + 1) % corners.len()]])
+        .collect()
 }
 
 fn area(corners: [DVec3; 3]) -> DVec3 {
@@ -58,18 +65,34 @@ fn assert_conforming(name: &str) {
     let mut borders = Vec::new();
     for (polygon, triangles) in triangles(&lit, scene.surfaces.len()).iter().enumerate() {
         let sides = sides(triangles);
-        assert!(sides.values().all(|uses| *uses == 1), "{name}: triangles of polygon {polygon} overlap or are folded");
+        assert!(
+            sides.values().all(|uses| *uses == 1),
+            "{name}: triangles of polygon {polygon} overlap or are folded"
+        );
         let outline = outline(&scene, polygon);
         for (a, b) in open_sides(&sides) {
-            let on_outline = outline.iter().any(|side| distance(at(a), *side) < hair && distance(at(b), *side) < hair);
-            assert!(on_outline, "{name}: polygon {polygon} is torn open between {} and {}", at(a), at(b));
+            let on_outline = outline
+                .iter()
+                .any(|side| distance(at(a), *side) < hair && distance(at(b), *side) < hair);
+            assert!(
+                on_outline,
+                "{name}: polygon {polygon} is torn open between {} and {}",
+                at(a),
+                at(b)
+            );
             borders.push((a, b));
         }
         let whole = scene.normal(&scene.surfaces[polygon]);
         let covered: f64 = triangles.iter().map(|t| area(t.map(at)).dot(whole)).sum();
         let expected = scene.area(&scene.surfaces[polygon]);
-        assert!((covered / expected - 1.0).abs() < 1e-9, "{name}: {covered} of {expected} of polygon {polygon}");
-        assert!(triangles.iter().all(|t| area(t.map(at)).dot(whole) > 0.0), "{name}: polygon {polygon} has folded triangles");
+        assert!(
+            (covered / expected - 1.0).abs() < 1e-9,
+            "{name}: {covered} of {expected} of polygon {polygon}"
+        );
+        assert!(
+            triangles.iter().all(|t| area(t.map(at)).dot(whole) > 0.0),
+            "{name}: polygon {polygon} has folded triangles"
+        );
     }
     assert_matching(name, &lit, &borders, hair);
 }
@@ -84,7 +107,12 @@ fn assert_matching(name: &str, lit: &LitMesh, borders: &[(u32, u32)], hair: f64)
         for &position in positions.iter().filter(|p| **p != a && **p != b) {
             let point = at(position);
             let near = point.cmpge(low).all() && point.cmple(high).all();
-            assert!(!near || distance(point, ends) > hair, "{name}: {point} lies on the side from {} to {}", ends[0], ends[1]);
+            assert!(
+                !near || distance(point, ends) > hair,
+                "{name}: {point} lies on the side from {} to {}",
+                ends[0],
+                ends[1]
+            );
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Where the power goes: emitted = absorbed + escaped + unshot + residual, and the residual is small.
 
 use super::common::closed_form::between_opposite_squares;
-use super::common::shapes::{add_grey, add_level, empty};
+use super::common::shapes::{add_cuboid, add_grey, add_level, empty};
 use super::{bundled, draft, engines, solved, solved_by};
+use glam::DVec3;
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset};
 
@@ -22,47 +23,76 @@ fn a_square_receives_its_form_factor_of_the_power_of_another() {
     let exact = between_opposite_squares();
     assert!((exact - 0.199_824_9).abs() < 1e-7, "{exact}");
     for engine in engines() {
-        for (preset, bound) in [(Preset::Draft, 0.01), (Preset::Standard, 0.002)] {
+        for (preset, bound) in [(Preset::Draft, 0.01), (Preset::Standard, 0.004)] {
             let report = solved_by(&two_squares(), preset.options(), engine, 0).report;
-            let [emitted, absorbed, escaped] = [report.power.emitted, report.power.absorbed, report.power.escaped];
-            eprintln!("{preset:?} {engine} absorbed {:.5} escaped {:.5}", absorbed / emitted / exact - 1.0, escaped / emitted - (1.0 - exact));
-            assert!((emitted - 3.0).abs() < 1e-6, "1 W in each of three channels: {emitted}");
-            if false {assert!((absorbed / emitted / exact - 1.0).abs() <= bound, "{preset:?} by {engine}: {absorbed}");}
-            // By 16384 evenly spread rays.
-            assert!((escaped / emitted - (1.0 - exact)).abs() <= 0.001, "{preset:?} by {engine}: {escaped}");
+            let [emitted, absorbed, escaped] = [
+                report.power.emitted,
+                report.power.absorbed,
+                report.power.escaped,
+            ];
+            assert!(
+                (emitted - 3.0).abs() < 1e-6,
+                "1 W in each of three channels: {emitted}"
+            );
+            assert!(
+                (absorbed / emitted / exact - 1.0).abs() <= bound,
+                "{preset:?} by {engine}: {absorbed}"
+            );
+            // Twice the standard error of 16384 independent rays.
+            assert!(
+                (escaped / emitted - (1.0 - exact)).abs() <= 0.006,
+                "{preset:?} by {engine}: {escaped}"
+            );
         }
     }
 }
 
 #[test]
 fn the_ledger_closes_on_the_scenes() {
-    // A draft's own discretisation error; see the tables of path-traced values for the same sizes.
-    for (name, bound) in [("cornell-box", 0.03), ("shadow", 0.03), ("secondary", 0.03), ("geometry", 0.03), ("huge", 0.03), ("emission", 0.03)] {
+    // A draft's error of discretisation, which is the largest where lights touch what they light.
+    for (name, bound) in [
+        ("cornell-box", 0.02),
+        ("shadow", 0.005),
+        ("secondary", 0.01),
+        ("geometry", 0.005),
+        ("huge", 0.005),
+        ("emission", 0.03),
+    ] {
         let report = solved(&bundled(name), draft()).report;
         let power = &report.power;
         let sum = power.absorbed + power.escaped + power.unshot + power.residual;
-        eprintln!("{name} residual {:.5} escaped {:.5} unshot {:.5}", power.residual / power.emitted, power.escaped / power.emitted, power.unshot / power.emitted);
         assert!((sum / power.emitted - 1.0).abs() < 1e-9, "{name}");
-        assert!(power.residual.abs() <= bound * power.emitted, "{name}: {power:?}");
-        assert!(power.unshot <= report.options.tolerance * power.emitted, "{name}: {power:?}");
+        assert!(
+            power.residual.abs() <= bound * power.emitted,
+            "{name}: {power:?}"
+        );
+        assert!(
+            power.unshot <= report.options.tolerance * power.emitted,
+            "{name}: {power:?}"
+        );
         for channel in 0..3 {
             let rgb = &report.power_rgb;
-            assert!(rgb.residual[channel].abs() <= bound * rgb.emitted[channel], "{name}: {rgb:?}");
+            assert!(
+                rgb.residual[channel].abs() <= bound * rgb.emitted[channel],
+                "{name}: {rgb:?}"
+            );
         }
     }
 }
 
-/// In a closed room of one grey, a fraction (1 - ρ) of what is shot is absorbed at each bounce and nothing is lost.
+/// The rays that measure what escapes find no way out between walls that meet.
 #[test]
 fn nothing_escapes_from_a_closed_room() {
     let mut scene = empty();
     let grey = add_grey(&mut scene, 0.5, 1.0);
-    super::common::shapes::add_cuboid(&mut scene, grey, [glam::DVec3::ZERO, glam::DVec3::ONE], true);
-    let options = Options { tolerance: 1e-4, ..draft() };
+    add_cuboid(&mut scene, grey, [DVec3::ZERO, DVec3::ONE], true);
+    let options = Options {
+        tolerance: 1e-4,
+        ..draft()
+    };
     for engine in engines() {
         let power = solved_by(&scene, options.clone(), engine, 0).report.power;
-        eprintln!("closed {engine} residual {:.6}", power.residual / power.emitted);
         assert_eq!(power.escaped, 0.0, "a ray found its way out, by {engine}");
-        assert!(power.residual.abs() <= 0.01 * power.emitted, "{power:?}");
+        assert!(power.residual.abs() <= 0.005 * power.emitted, "{power:?}");
     }
 }

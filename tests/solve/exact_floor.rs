@@ -6,6 +6,7 @@
 use super::common::closed_form::emission_floor;
 use super::common::reference::Deviation;
 use super::{bundled, solved};
+use glam::DVec3;
 use radiosity::solution::Prober;
 use radiosity::solver::Preset;
 
@@ -14,7 +15,6 @@ use radiosity::solver::Preset;
 fn a_standard_solve_has_the_exact_floor() {
     let solution = solved(&bundled("emission"), Preset::Standard.options());
     let deviation = Deviation::of(&solution, &emission_floor());
-    eprintln!("{deviation:?}");
     assert_eq!(deviation.missed, 0);
     assert!(deviation.n_rms <= 0.012, "{deviation:?}");
     assert!(deviation.rms_rel <= 0.02, "{deviation:?}");
@@ -29,14 +29,17 @@ fn a_hundred_small_lights_light_the_floor_as_one_large_one() {
     let prober = Prober::new(&solution);
     let samples = emission_floor();
     let mean = samples.iter().map(|s| s.irradiance.x).sum::<f64>() / samples.len() as f64;
-    let difference = |point: glam::DVec3| {
-        let mirrored = glam::DVec3::new(-point.x, point.y, point.z);
-        let [a, b] = [point, mirrored].map(|p| prober.probe(p, glam::DVec3::Y).map(|probe| f64::from(probe.irradiance.x)));
+    let difference = |point: DVec3| {
+        let mirrored = DVec3::new(-point.x, point.y, point.z);
+        let [a, b] = [point, mirrored].map(|p| {
+            prober
+                .probe(p, DVec3::Y)
+                .map(|probe| f64::from(probe.irradiance.x))
+        });
         a.zip(b).map(|(a, b)| (a - b) / mean)
     };
     let differences: Vec<f64> = samples.iter().filter_map(|s| difference(s.point)).collect();
     assert_eq!(differences.len(), samples.len());
     let rms = (differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64).sqrt();
-    eprintln!("mirror rms {rms}");
     assert!(rms <= 0.015, "{rms}");
 }

@@ -23,7 +23,11 @@ use radiosity::{Settings, solve};
 
 /// The engines that are there: obvhs always, Embree if it was built in.
 fn engines() -> Vec<EngineChoice> {
-    if cfg!(embree) { vec![EngineChoice::Embree, EngineChoice::Obvhs] } else { vec![EngineChoice::Obvhs] }
+    if cfg!(embree) {
+        vec![EngineChoice::Embree, EngineChoice::Obvhs]
+    } else {
+        vec![EngineChoice::Obvhs]
+    }
 }
 
 /// A scene of the project.
@@ -37,7 +41,11 @@ fn solved(scene: &Scene, options: Options) -> Solution {
 }
 
 fn solved_by(scene: &Scene, options: Options, engine: EngineChoice, threads: usize) -> Solution {
-    let settings = Settings { options, engine, threads };
+    let settings = Settings {
+        options,
+        engine,
+        threads,
+    };
     solve(scene, &settings, &mut Silent).unwrap_or_else(|error| panic!("{error}"))
 }
 

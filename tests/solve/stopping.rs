@@ -9,10 +9,21 @@ use std::time::Duration;
 
 /// Everything that a solution promises, whatever the reason for its end.
 fn assert_whole(solution: &Solution) {
-    assert_eq!(solution.light.irradiance.len(), solution.mesh.vertices.len());
-    assert!(solution.light.irradiance.iter().all(|e| e.is_finite() && e.min_element() >= 0.0));
+    assert_eq!(
+        solution.light.irradiance.len(),
+        solution.mesh.vertices.len()
+    );
+    assert!(
+        solution
+            .light
+            .irradiance
+            .iter()
+            .all(|e| e.is_finite() && e.min_element() >= 0.0)
+    );
     let mut bytes = Vec::new();
-    solution.write(&mut bytes).expect("memory can be written to");
+    solution
+        .write(&mut bytes)
+        .expect("memory can be written to");
     let again = Solution::decode(&bytes).unwrap_or_else(|found| panic!("{found}"));
     assert_eq!(again.light, solution.light);
     assert_eq!(again.report.stop_reason, solution.report.stop_reason);
@@ -24,23 +35,44 @@ fn converged_when_little_is_unshot() {
     assert_whole(&solution);
     assert_eq!(solution.report.stop_reason, StopReason::Converged);
     let power = &solution.report.power;
-    assert!(power.unshot > 0.0 && power.unshot <= 0.005 * power.emitted, "{power:?}");
+    assert!(
+        power.unshot > 0.0 && power.unshot <= 0.005 * power.emitted,
+        "{power:?}"
+    );
 }
 
 #[test]
 fn after_the_largest_number_of_shots() {
     for most in [0, 1, 4] {
-        let solution = solved(&bundled("cornell-box"), Options { max_shots: Some(most), ..draft() });
+        let solution = solved(
+            &bundled("cornell-box"),
+            Options {
+                max_shots: Some(most),
+                ..draft()
+            },
+        );
         assert_whole(&solution);
-        assert_eq!((solution.report.stop_reason, solution.report.shots), (StopReason::MaxShots, most));
+        assert_eq!(
+            (solution.report.stop_reason, solution.report.shots),
+            (StopReason::MaxShots, most)
+        );
     }
 }
 
 #[test]
 fn when_time_is_up() {
-    let solution = solved(&bundled("cornell-box"), Options { time_limit: Some(Duration::from_nanos(1)), ..draft() });
+    let solution = solved(
+        &bundled("cornell-box"),
+        Options {
+            time_limit: Some(Duration::from_nanos(1)),
+            ..draft()
+        },
+    );
     assert_whole(&solution);
-    assert_eq!((solution.report.stop_reason, solution.report.shots), (StopReason::TimeLimit, 0));
+    assert_eq!(
+        (solution.report.stop_reason, solution.report.shots),
+        (StopReason::TimeLimit, 0)
+    );
 }
 
 #[test]
@@ -50,8 +82,17 @@ fn at_once_where_nothing_emits() {
     add_level(&mut scene, grey, [[0.0, 0.0], [1.0, 1.0]], 0.0, true);
     let solution = solved(&scene, draft());
     assert_whole(&solution);
-    assert_eq!((solution.report.stop_reason, solution.report.shots), (StopReason::NoEmitter, 0));
-    assert!(solution.light.irradiance.iter().all(|e| *e == glam::Vec3::ZERO));
+    assert_eq!(
+        (solution.report.stop_reason, solution.report.shots),
+        (StopReason::NoEmitter, 0)
+    );
+    assert!(
+        solution
+            .light
+            .irradiance
+            .iter()
+            .all(|e| *e == glam::Vec3::ZERO)
+    );
 }
 
 #[test]
@@ -72,7 +113,11 @@ impl Observer for StopAt {
     fn progress(&mut self, progress: &Progress) -> Control {
         self.calls += 1;
         self.last = Some(*progress);
-        if self.calls >= self.call { Control::Stop } else { Control::Continue }
+        if self.calls >= self.call {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
     }
 }
 
@@ -80,14 +125,29 @@ impl Observer for StopAt {
 #[test]
 fn when_the_observer_says_so() {
     for call in [1, 2, 3, 7, 20] {
-        let mut observer = StopAt { call, calls: 0, last: None };
-        let settings = Settings { options: draft(), ..Settings::default() };
-        let solution = solve(&bundled("cornell-box"), &settings, &mut observer).unwrap_or_else(|error| panic!("{error}"));
+        let mut observer = StopAt {
+            call,
+            calls: 0,
+            last: None,
+        };
+        let settings = Settings {
+            options: draft(),
+            ..Settings::default()
+        };
+        let solution = solve(&bundled("cornell-box"), &settings, &mut observer)
+            .unwrap_or_else(|error| panic!("{error}"));
         assert_whole(&solution);
         assert_eq!(solution.report.stop_reason, StopReason::Interrupted);
-        assert!(observer.calls <= call + 1, "asked {} times after a stop at {call}", observer.calls);
+        assert!(
+            observer.calls <= call + 1,
+            "asked {} times after a stop at {call}",
+            observer.calls
+        );
         let last = observer.last.expect("was called");
-        assert_eq!((last.shots, last.elements), (solution.report.shots, solution.report.elements));
+        assert_eq!(
+            (last.shots, last.elements),
+            (solution.report.shots, solution.report.elements)
+        );
         let power = &solution.report.power;
         assert!((last.unshot.element_sum() - power.unshot).abs() <= 1e-6 * power.emitted);
     }
@@ -104,11 +164,22 @@ fn progress_goes_forward() {
         }
     }
     let mut watch = Watch(Vec::new());
-    let settings = Settings { options: draft(), ..Settings::default() };
-    let solution = solve(&bundled("cornell-box"), &settings, &mut watch).unwrap_or_else(|error| panic!("{error}"));
+    let settings = Settings {
+        options: draft(),
+        ..Settings::default()
+    };
+    let solution = solve(&bundled("cornell-box"), &settings, &mut watch)
+        .unwrap_or_else(|error| panic!("{error}"));
     for pair in watch.0.windows(2) {
-        assert!(pair[0].shots <= pair[1].shots && pair[0].rays <= pair[1].rays && pair[0].elements <= pair[1].elements);
+        assert!(
+            pair[0].shots <= pair[1].shots
+                && pair[0].rays <= pair[1].rays
+                && pair[0].elements <= pair[1].elements
+        );
     }
     let last = watch.0.last().expect("was called");
-    assert_eq!((last.shots, last.rays), (solution.report.shots, solution.report.rays));
+    assert_eq!(
+        (last.shots, last.rays),
+        (solution.report.shots, solution.report.rays)
+    );
 }

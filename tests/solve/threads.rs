@@ -12,7 +12,9 @@ fn bytes(scene: &Scene, engine: EngineChoice, threads: usize) -> Vec<u8> {
     solution.report.threads = 0;
     solution.report.seconds = Seconds::default();
     let mut bytes = Vec::new();
-    solution.write(&mut bytes).expect("memory can be written to");
+    solution
+        .write(&mut bytes)
+        .expect("memory can be written to");
     bytes
 }
 
@@ -23,7 +25,10 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         for engine in engines() {
             let alone = bytes(&scene, engine, 1);
             for threads in [2, 7] {
-                assert!(bytes(&scene, engine, threads) == alone, "{name} by {engine} on {threads} threads");
+                assert!(
+                    bytes(&scene, engine, threads) == alone,
+                    "{name} by {engine} on {threads} threads"
+                );
             }
         }
     }
