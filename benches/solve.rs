@@ -28,7 +28,11 @@ fn compare(name: &str, scene: &Scene, preset: Preset) {
     let mut rays = [0; 2];
     for _ in 0..ROUNDS {
         for (i, engine) in engines.into_iter().enumerate() {
-            let settings = Settings { options: preset.options(), engine, threads: 0 };
+            let settings = Settings {
+                options: preset.options(),
+                engine,
+                threads: 0,
+            };
             let started = Instant::now();
             if let Ok(solution) = solve(scene, &settings, &mut Silent) {
                 times[i].push(started.elapsed().as_secs_f64());
@@ -47,6 +51,9 @@ fn compare(name: &str, scene: &Scene, preset: Preset) {
         };
         let mega = rays[i] as f64 / 1e6;
         let ratio = medians[0].map_or(f64::NAN, |embree| seconds / embree);
-        println!("{name:14} {preset:<10?} {engine:8} {seconds:7.2} {mega:6.2} {:8.2}  {ratio:9.2}", mega / seconds);
+        println!(
+            "{name:14} {preset:<10?} {engine:8} {seconds:7.2} {mega:6.2} {:8.2}  {ratio:9.2}",
+            mega / seconds
+        );
     }
 }

@@ -37,13 +37,18 @@ pub(super) fn point_to_quad(normal: DVec3, corners: [DVec3; 4]) -> f64 {
     let next = |i: usize| (i + 1) % 4;
     let cosines =
         std::array::from_fn(|i| x[i] * x[next(i)] + y[i] * y[next(i)] + z[i] * z[next(i)]);
-    let heights: [f64; 4] = std::array::from_fn(|i| {
+    let cross = |i: usize| {
         let j = next(i);
-        normal.x * (y[i] * z[j] - z[i] * y[j])
-            + normal.y * (z[i] * x[j] - x[i] * z[j])
-            + normal.z * (x[i] * y[j] - y[i] * x[j])
-    });
-    let angles = angles_over_sines(cosines);
+        [
+            y[i] * z[j] - z[i] * y[j],
+            z[i] * x[j] - x[i] * z[j],
+            x[i] * y[j] - y[i] * x[j],
+        ]
+    };
+    let crosses: [[f64; 3]; 4] = std::array::from_fn(cross);
+    let heights = crosses.map(|[x, y, z]| normal.x * x + normal.y * y + normal.z * z);
+    let squared_sines = crosses.map(|[x, y, z]| x * x + y * y + z * z);
+    let angles = angles_over_sines(cosines, squared_sines);
     let sum: f64 = std::array::from_fn::<f64, 4, _>(|i| heights[i] * angles[i])
         .iter()
         .sum();

@@ -4,7 +4,8 @@ use super::{WriteError, check_picture, write_atomically};
 use ::exr::error::Error;
 use ::exr::meta::attribute::{Chromaticities, Text};
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec, Vec2, WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec, Vec2,
+    WritableImage,
 };
 use std::io;
 use std::path::Path;
@@ -36,7 +37,10 @@ pub fn write_exr(
             AnyChannel::new(name, FlatSamples::F32(samples))
         };
         // Flat samples rather than typed pixels: the crate's typed writer takes longer to compile than all else here.
-        let list: SmallVec<_> = [("A", 3), ("B", 2), ("G", 1), ("R", 0)].into_iter().map(channel).collect();
+        let list: SmallVec<_> = [("A", 3), ("B", 2), ("G", 1), ("R", 0)]
+            .into_iter()
+            .map(channel)
+            .collect();
         let channels = AnyChannels::sort(list);
         let attributes = LayerAttributes {
             comments: Some(Text::from(

@@ -113,8 +113,8 @@ impl Preset {
                 min_size: 0.004,
             },
             meshing_power: 0.003,
-            epsilon_fd: 0.003,
-            epsilon_fe: 0.10,
+            epsilon_fd: 0.004,
+            epsilon_fe: 0.02,
             epsilon_area: 1.0 / 1024.0,
             raw_form_factors: false,
             form_factor: FormFactorRule::Hybrid,
@@ -136,7 +136,7 @@ impl Preset {
                 },
                 meshing_power: 0.02,
                 epsilon_fd: 0.01,
-                epsilon_fe: 0.4,
+                epsilon_fe: 0.06,
                 distance_factor: 5.0,
                 tolerance: 0.005,
                 ..standard
@@ -154,7 +154,7 @@ impl Preset {
                 },
                 meshing_power: 0.0005,
                 epsilon_fd: 0.0005,
-                epsilon_fe: 0.03,
+                epsilon_fe: 0.004,
                 distance_factor: 20.0,
                 tolerance: 0.0002,
                 ..standard
