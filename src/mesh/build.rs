@@ -120,7 +120,8 @@ impl Mesh {
     }
 
     fn split_to_initial_size(&mut self) {
-        let longest = self.limits.initial_size * self.frame.extent();
+        // A hair more, so that rounding does not decide about elements of exactly this size.
+        let longest = self.limits.initial_size * self.frame.extent() * (1.0 + 1e-9);
         let mut from = 0;
         while from < self.elements.len() {
             let to = self.elements.len();

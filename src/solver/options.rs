@@ -134,7 +134,7 @@ impl Preset {
                     max_depth: 7,
                     min_size: 0.016,
                 },
-                meshing_power: 0.02,
+                meshing_power: 0.004,
                 epsilon_fd: 0.01,
                 epsilon_fe: 0.06,
                 distance_factor: 5.0,

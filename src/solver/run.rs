@@ -186,12 +186,14 @@ impl<'a> Solver<'a> {
             }
             let shooter = select(&powers);
             let power = powers[shooter].element_sum() / emitted.element_sum();
-            self.shoot(shooter, power, observer);
+            if self.shoot(shooter, power, observer) == Control::Stop {
+                return StopReason::Interrupted;
+            }
         }
     }
 
     /// Adds the contribution of one patch everywhere, and refines where it falls.
-    fn shoot(&mut self, shooter: usize, power: f64, observer: &mut dyn Observer) {
+    fn shoot(&mut self, shooter: usize, power: f64, observer: &mut dyn Observer) -> Control {
         let thresholds = self.source_thresholds();
         let source = source_of(&self.mesh, &self.light, shooter, &self.options, &thresholds);
         self.light.take(&self.mesh, shooter);
@@ -209,8 +211,9 @@ impl<'a> Solver<'a> {
             .map(|p| faces(p, &source, extent))
             .collect();
         let mut arrived = self.shoot_at_vertices(&sampler, &source, &reached);
+        let mut control = Control::Continue;
         if power >= self.options.meshing_power {
-            self.refine(&sampler, &source, &reached, &mut arrived, observer);
+            control = self.refine(&sampler, &source, &reached, &mut arrived, observer);
             self.meshing_shots += 1;
         }
         // The square root shares the rays so that each shot adds its part to the error of the whole.
@@ -225,6 +228,7 @@ impl<'a> Solver<'a> {
             (rays, self.shots as u32),
         );
         self.shots += 1;
+        control
     }
 
     fn shoot_at_vertices(
@@ -269,7 +273,7 @@ impl<'a> Solver<'a> {
         reached: &[bool],
         arrived: &mut Vec<Gather>,
         observer: &mut dyn Observer,
-    ) {
+    ) -> Control {
         let mut candidates: Vec<u32> = self
             .mesh
             .leaves()
@@ -290,9 +294,10 @@ impl<'a> Solver<'a> {
             self.rays += refinement.rays;
             if observer.progress(&self.progress(self.unshot_powers().iter().sum())) == Control::Stop
             {
-                return;
+                return Control::Stop;
             }
         }
+        Control::Continue
     }
 
     /// Whether the nearest vertex to a point of a patch is open.

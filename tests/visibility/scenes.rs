@@ -54,6 +54,7 @@ impl Scene {
         scene
     }
 
+    #[allow(dead_code, reason = "for the bench of occlusion")]
     /// A room with `balls` × `balls` balls of `rings` rings hanging in it.
     pub fn hall(balls: usize, rings: usize) -> Self {
         let mut scene = Self::new("hall");
