@@ -4,15 +4,18 @@
 //! F(x, s) is the cosine-weighted fraction of the hemisphere above x that the polygon s fills, so that the
 //! irradiance is E(x) = Σ F(x, s) B(s). Imports `geometry`, `radiometry` and the visibility trait.
 
+mod disagreement;
 mod disk;
 mod edge;
 mod hybrid;
+mod partition;
 mod polygon;
 mod sampling;
 mod source;
 
 pub use disk::point_to_disk;
 pub use hybrid::{Formula, Receiver};
+pub use partition::{SourceThresholds, ToleranceScale};
 pub use polygon::{point_to_polygon, point_to_visible_polygon};
-pub use sampling::{Gather, Sampler, Scratch, SourceThresholds, ToleranceScale};
+pub use sampling::{Gather, Sampler, Scratch};
 pub use source::{Cell, DEEPEST, Source, SourceShape};

@@ -270,6 +270,11 @@ impl Source {
     }
 }
 
+/// The four children of a cell.
+pub(super) fn children(cell: CellIndex) -> impl DoubleEndedIterator<Item = CellIndex> + Clone {
+    4 * cell + 1..=4 * cell + 4
+}
+
 /// Number of the first cell of a level.
 const fn level_start(level: u32) -> usize {
     ((1usize << (2 * level)) - 1) / 3

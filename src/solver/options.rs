@@ -135,10 +135,10 @@ impl Preset {
                     min_size: 0.016,
                 },
                 meshing_power: 0.004,
-                epsilon_fd: 0.01,
-                epsilon_fe: 0.06,
+                epsilon_fd: 0.008,
+                epsilon_fe: 0.04,
                 distance_factor: 5.0,
-                tolerance: 0.005,
+                tolerance: 0.003,
                 ..standard
             },
             Preset::Standard => standard,

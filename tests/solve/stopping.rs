@@ -144,10 +144,9 @@ fn when_the_observer_says_so() {
             observer.calls
         );
         let last = observer.last.expect("was called");
-        assert_eq!(
-            (last.shots, last.elements),
-            (solution.report.shots, solution.report.elements)
-        );
+        // A stop within a shot lets the shot be accounted for.
+        assert!((last.shots..=last.shots + 1).contains(&solution.report.shots));
+        assert_eq!(last.elements, solution.report.elements);
         let power = &solution.report.power;
         assert!((last.unshot.element_sum() - power.unshot).abs() <= 1e-6 * power.emitted);
     }
