@@ -108,7 +108,7 @@ impl Preset {
             size_exponent: 1.0,
             quantity: Quantity::Irradiance,
             limits: MeshLimits {
-                initial_size: 0.125,
+                initial_size: 0.06,
                 max_depth: 10,
                 min_size: 0.004,
             },
@@ -148,7 +148,7 @@ impl Preset {
                 epsilon_v: 0.3,
                 visibility_significance: 0.2,
                 limits: MeshLimits {
-                    initial_size: 0.0625,
+                    initial_size: 0.05,
                     max_depth: 12,
                     min_size: 0.001,
                 },
