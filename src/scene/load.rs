@@ -117,6 +117,7 @@ fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Sce
     let library = mtl::read(&file, &checked, &mut warnings)?;
     let materials = materials::decide(&library, settings)?;
     materials::warn_of_defaults(path, &library, settings.map(|(_, s)| s), &mut warnings);
+    materials::warn_of_perfect(path, &materials, &mut warnings);
     checked
         .unknown
         .report(&mut warnings, path, "line", "of unknown kind skipped");

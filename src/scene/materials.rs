@@ -12,10 +12,18 @@ use toml::Spanned;
 /// What a material reflects where no file says it.
 const DEFAULT_REFLECTANCE: f32 = 0.5;
 
+/// What a channel reflects where the files say that it reflects everything: light must die out.
+const WHITEST: f32 = 0.999;
+
+/// A channel up to here is meant to be 1: the file's number was rounded.
+const ROUNDED_ONE: f32 = 1.0 + 1e-6;
+
 /// The scene's materials, with the rule for the sides of their surfaces; both indexed as the library's.
 pub(super) struct Materials {
     pub list: Vec<Material>,
     pub sides: Vec<SidesRule>,
+    /// Names of those that were to reflect everything.
+    perfect: Vec<String>,
 }
 
 /// Judges every material of the library, as overridden by the settings (and the file they stand in).
@@ -32,36 +40,40 @@ pub(super) fn decide(
     let mut materials = Materials {
         list: Vec::new(),
         sides: Vec::new(),
+        perfect: Vec::new(),
     };
     for entry in &library.entries {
         let over =
             settings.and_then(|(file, s)| Some((file, s.material.get(&entry.name)?.get_ref())));
         let rule = over.and_then(|(_, material)| material.sides);
-        materials.list.push(material(entry, over)?);
+        let (material, perfect) = material(entry, over)?;
+        if perfect {
+            materials.perfect.push(quote(&material.name));
+        }
+        materials.list.push(material);
         materials.sides.push(rule.unwrap_or(scene_rule));
     }
     Ok(materials)
 }
 
-/// One material, as its MTL file and then the settings have it.
+/// One material, as its MTL file and then the settings have it, and whether it was to reflect everything.
 fn material(
     entry: &Entry,
     over: Option<(&TextFile, &MaterialSettings)>,
-) -> Result<Material, SceneError> {
+) -> Result<(Material, bool), SceneError> {
     let name = entry.name.clone();
     let mut reflectance = Spectrum::splat(DEFAULT_REFLECTANCE);
     if let Some(stated) = stated(&entry.reflectance, over, |m| m.reflectance.as_ref()) {
         // Judged as stored: a reflectance just below 1 must not become 1 by rounding.
         reflectance = stated.channels.as_vec3();
-        if !reflectance
-            .to_array()
-            .iter()
-            .all(|c| (0.0..1.0).contains(c))
-        {
-            let expected = "0 <= reflectance < 1 in each channel";
+        let channels = reflectance.to_array();
+        if !channels.iter().all(|c| (0.0..=ROUNDED_ONE).contains(c)) {
+            let expected = "0 <= reflectance <= 1 in each channel";
             return Err(stated.refused("reflectance", &name, expected));
         }
     }
+    let perfect = reflectance.max_element() >= 1.0;
+    let reflectance = reflectance.map(|channel| if channel >= 1.0 { WHITEST } else { channel });
     let mut emitted_radiance = Spectrum::ZERO;
     if let Some(stated) = stated(&entry.emitted_radiance, over, |m| {
         m.emitted_radiance.as_ref()
@@ -76,11 +88,12 @@ fn material(
             return Err(stated.refused("emitted radiance", &name, expected));
         }
     }
-    Ok(Material {
+    let material = Material {
         name,
         reflectance,
         emitted_radiance,
-    })
+    };
+    Ok((material, perfect))
 }
 
 impl Stated {
@@ -130,6 +143,18 @@ pub(super) fn warn_of_defaults(
         let list = shortened(&names);
         let file = file.display();
         warnings.push(format!("{file}: {count} material{plural} without `Kd` given a grey of {DEFAULT_REFLECTANCE}: {list}"));
+    }
+}
+
+/// Warns of materials that were to reflect everything.
+pub(super) fn warn_of_perfect(file: &Path, materials: &Materials, warnings: &mut Vec<String>) {
+    let names = &materials.perfect;
+    if !names.is_empty() {
+        let (count, plural) = (names.len(), if names.len() == 1 { "" } else { "s" });
+        let (file, list) = (file.display(), shortened(names));
+        warnings.push(format!(
+            "{file}: {count} material{plural} with a reflectance of 1 given {WHITEST} in that channel: {list}"
+        ));
     }
 }
 

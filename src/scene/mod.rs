@@ -14,7 +14,7 @@
 //! sides = "auto"                # front, both, or auto (default): see below
 //!
 //! [material.white]              # overrides what the MTL file says
-//! reflectance = [0.725, 0.71, 0.68]  # or one number for all channels; 0 <= reflectance < 1
+//! reflectance = [0.725, 0.71, 0.68]  # or one number for all channels; 0 <= reflectance <= 1
 //! emitted_radiance = 0               # W m⁻² sr⁻¹
 //! sides = "both"
 //!
@@ -29,7 +29,8 @@
 //! exposure = 0.5                # stops; else chosen from the picture
 //! ```
 //!
-//! In MTL files `Kd` is the reflectance and `Ke` the emitted radiance; nothing else is used. Polygons without
+//! In MTL files `Kd` is the reflectance and `Ke` the emitted radiance; nothing else is used. A reflectance of 1
+//! becomes 0.999 with a warning, so that light dies out; more than 1 is refused. Polygons without
 //! a material get the one named `default`.
 //!
 //! `auto` makes closed, consistently oriented sets of polygons radiate from the front, all others from both

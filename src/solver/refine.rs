@@ -209,10 +209,10 @@ impl Refinement<'_> {
         );
         let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, first);
-        for vertex in first_vertex..self.mesh.vertices.len() {
-            self.arrived[vertex].irradiance = irradiance[vertex];
-            self.light.irradiance[vertex] += irradiance[vertex];
-            self.light.unshot[vertex] += irradiance[vertex];
+        for (vertex, &now) in irradiance.iter().enumerate().skip(first_vertex) {
+            self.arrived[vertex].irradiance = now;
+            self.light.irradiance[vertex] += now;
+            self.light.unshot[vertex] += now;
         }
         fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
         fresh

@@ -198,6 +198,16 @@ fn what_the_program_cannot_show_is_counted() {
 }
 
 #[test]
+fn a_reflectance_of_one_is_lowered_with_a_warning() {
+    let (scene, warnings) =
+        with_material("newmtl a\nKd 1 .5 0\nnewmtl b\nKd .99999999 1.0000005 .9\n");
+    assert_eq!(scene.materials[0].reflectance, Vec3::new(0.999, 0.5, 0.0));
+    assert_eq!(scene.materials[1].reflectance, Vec3::new(0.999, 0.999, 0.9));
+    let expected = "2 materials with a reflectance of 1 given 0.999 in that channel: `a`, `b`";
+    assert_eq!(warnings, [format!("it.obj: {expected}")]);
+}
+
+#[test]
 fn one_number_stands_for_three_channels() {
     let (scene, _) = with_material("newmtl a\nKd .25\nKe 2\n");
     assert_eq!(scene.materials[0].reflectance, Vec3::splat(0.25));

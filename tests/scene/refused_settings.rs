@@ -95,10 +95,10 @@ fn keys_of_a_scene_file() {
 
 #[test]
 fn materials_of_a_scene_file() {
-    let reflectance = "expected 0 <= reflectance < 1 in each channel";
+    let reflectance = "expected 0 <= reflectance <= 1 in each channel";
     toml_is_refused(
-        "[material.a]\nreflectance = 1.0",
-        &format!("scene.toml:3: found the reflectance (1, 1, 1) of `a`; {reflectance}"),
+        "[material.a]\nreflectance = 1.5",
+        &format!("scene.toml:3: found the reflectance (1.5, 1.5, 1.5) of `a`; {reflectance}"),
     );
     toml_is_refused(
         "[material.a]\nreflectance = [0.1, 0.2]",

@@ -64,8 +64,7 @@ fn deviation(factor: f64, extents: f64) -> Deviation {
         .into_iter()
         .map(sample)
         .collect();
-    let deviation = Deviation::of(&solved(&mapped(&original, place), options()), &samples);
-    deviation
+    Deviation::of(&solved(&mapped(&original, place), options()), &samples)
 }
 
 /// Rounding moves a ray or a test by so little, yet some decide whether an element is split; what the draft has
