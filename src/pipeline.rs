@@ -51,7 +51,7 @@ pub fn solve(
             reason: e.to_string(),
         })?;
     let threads = pool.current_num_threads();
-    let mesh = Mesh::new(scene, settings.options.limits);
+    let mesh = pool.install(|| Mesh::new(scene, settings.options.limits));
     let visibility = build(settings.engine, &occluders(scene, &mesh), threads)?;
     let solver =
         pool.install(|| Solver::new(scene, mesh, visibility.as_ref(), settings.options.clone()));
@@ -88,7 +88,7 @@ pub fn solve(
         power: PowerReport::new(&outcome.ledger, |p| p.element_sum()),
         power_rgb: PowerReport::new(&outcome.ledger, |p| p.to_array()),
         options: settings.options.clone(),
-        warnings: scene.warnings.clone(),
+        warnings: warnings(scene, &mesh),
     };
     Ok(Solution {
         report,
@@ -97,4 +97,17 @@ pub fn solve(
         mesh,
         light: outcome.light,
     })
+}
+
+/// What the reader found suspicious, and what could not be meshed as it should.
+fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
+    let mut warnings = scene.warnings.clone();
+    let count = mesh.unsplit_contacts;
+    if count > 0 {
+        let plural = if count == 1 { "" } else { "s" };
+        warnings.push(format!(
+            "{count} surface{plural} not split where others meet: light may leak along the contacts"
+        ));
+    }
+    warnings
 }

@@ -56,6 +56,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let mut bar = Bar::new(settings.options.tolerance);
     let mut solution = solve(&scene, &settings, &mut bar)?;
     bar.clear();
+    for warning in &solution.report.warnings[scene.warnings.len()..] {
+        eprintln!("warning: {warning}");
+    }
     solution.report.seconds.load = load;
     write(&mut solution, arguments)?;
     print!("{}", summary(&solution, started.elapsed().as_secs_f64()));

@@ -1,9 +1,8 @@
 //! From a scene to its coarsest mesh.
 
-use super::{Element, Frame, Lattice, Mesh, NONE, Patch, UNIT};
+use super::{Element, Frame, Lattice, Mesh, NONE, Patch, UNIT, contact};
 use crate::radiometry::exitance_from_radiance;
-use crate::scene::{Scene, Sides, Surface};
-use glam::DVec3;
+use crate::scene::{Scene, Sides};
 use rustc_hash::FxHashMap;
 
 /// How coarse the mesh starts and how fine it may become.
@@ -18,8 +17,9 @@ pub struct MeshLimits {
 }
 
 impl Mesh {
-    /// The coarsest mesh: a patch for each radiating side, a grid of nearly square elements on each quad patch, one
-    /// element on each triangle, split until `limits.initial_size` holds.
+    /// The coarsest mesh: surfaces are split along the lines in which others meet them; then a patch for each radiating side
+    /// of each piece, a grid of nearly square elements on each quad patch, one element on each triangle, split until
+    /// `limits.initial_size` holds.
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
         let frame = Frame::of(
             scene
@@ -28,8 +28,10 @@ impl Mesh {
                 .flat_map(|s| s.corners.indices())
                 .map(|v| scene.vertices[*v as usize]),
         );
+        let pieces = contact::pieces(scene, &frame);
         let mut mesh = Self {
             frame,
+            unsplit_contacts: pieces.unsplit,
             patches: Vec::new(),
             elements: Vec::new(),
             vertices: Vec::new(),
@@ -40,25 +42,19 @@ impl Mesh {
             at: FxHashMap::default(),
             limits,
         };
-        let cuts = cuts(scene);
-        for (number, surface) in scene.surfaces.iter().enumerate() {
-            let outline = outline(surface, &cuts);
-            let mut corners: Vec<DVec3> = surface
-                .corners
-                .indices()
-                .iter()
-                .map(|v| frame.enter(scene.vertices[*v as usize]))
-                .collect();
+        for piece in pieces.list {
+            let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
-            let mut front = Patch::new(number as u32, surface.polygon, &corners, false);
-            front.outline = outline;
+            let mut corners = piece.corners().to_vec();
+            let mut front = Patch::new(piece.surface, surface.polygon, &corners, false);
+            front.outline = piece.outline;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
             mesh.add_patch(front);
             if surface.sides == Sides::Both {
                 corners.reverse();
-                let mut back = Patch::new(number as u32, surface.polygon, &corners, true);
-                back.outline = reversed(outline, back.corners().len());
+                let mut back = Patch::new(piece.surface, surface.polygon, &corners, true);
+                back.outline = reversed(piece.outline, corners.len());
                 back.reflectance = material.reflectance;
                 mesh.add_patch(back);
             }
@@ -133,34 +129,6 @@ impl Mesh {
             from = to;
         }
     }
-}
-
-/// Sides that two surfaces of one input polygon share: where it was cut.
-fn cuts(scene: &Scene) -> FxHashMap<(u32, u32, u32), u32> {
-    let mut uses = FxHashMap::default();
-    for surface in &scene.surfaces {
-        for side in sides(surface) {
-            *uses.entry(side).or_insert(0) += 1;
-        }
-    }
-    uses.retain(|_, count| *count > 1);
-    uses
-}
-
-fn sides(surface: &Surface) -> impl Iterator<Item = (u32, u32, u32)> {
-    let corners = surface.corners.indices();
-    (0..corners.len()).map(move |i| {
-        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-        (surface.polygon, a.min(b), a.max(b))
-    })
-}
-
-fn outline(surface: &Surface, cuts: &FxHashMap<(u32, u32, u32), u32>) -> [bool; 4] {
-    let mut outline = [true; 4];
-    for (slot, side) in outline.iter_mut().zip(sides(surface)) {
-        *slot = !cuts.contains_key(&side);
-    }
-    outline
 }
 
 /// The outline of the same polygon with its corners in reverse order.

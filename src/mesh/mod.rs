@@ -1,13 +1,14 @@
 //! Patches, the quadtree of elements on each, and the vertices that elements share.
 //!
-//! A [`Patch`] is one radiating side of a surface. Its elements form a quadtree, kept balanced: neighbours differ by one
-//! level. Every element has a vertex at each corner and one at its centre, so light is known at 2n + 1 … points without
+//! A [`Patch`] is one radiating side of a surface, or of a piece of it where others meet it. Its elements form a quadtree,
+//! kept balanced: neighbours differ by one level. Every element has a vertex at each corner and one at its centre, so light is known at 2n + 1 … points without
 //! asking, and the interpolant is linear on the *fan* of triangles around the centre, hanging corners of finer neighbours
 //! included. That fan is the solution: it is what shoots, what is integrated, probed and exported.
 //! Imports `geometry`, `radiometry` and `scene`.
 
 mod build;
 mod buried;
+mod contact;
 mod element;
 mod fan;
 mod lattice;
@@ -41,7 +42,7 @@ pub struct Vertex {
 pub struct Mesh {
     /// From scene to mesh coordinates.
     pub frame: Frame,
-    /// The radiating sides, in the order of the scene's surfaces.
+    /// The radiating sides, in the order of the scene's surfaces, of which each may be in several pieces.
     pub patches: Vec<Patch>,
     /// All elements, parents included; children follow one another.
     pub elements: Vec<Element>,
@@ -61,6 +62,9 @@ pub struct Mesh {
     #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
+    /// Surfaces that could not be split along the lines in which others meet them: light may leak there.
+    #[serde(skip)]
+    pub unsplit_contacts: usize,
 }
 
 impl Mesh {

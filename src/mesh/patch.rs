@@ -1,4 +1,4 @@
-//! One radiating side of a surface.
+//! One radiating side of a surface, or of a piece of it.
 
 use super::lattice::{Lattice, UNIT};
 use crate::geometry::polygon;

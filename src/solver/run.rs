@@ -10,6 +10,7 @@ use super::shoot::{faces, shoot_at};
 use super::source::source_of;
 use super::state::Light;
 use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
+use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::{Corners, Scene};
@@ -102,17 +103,14 @@ impl<'a> Solver<'a> {
         options: Options,
     ) -> Self {
         let mut backing = Vec::new();
-        let mut fronts = mesh.patches.iter().filter(|p| !p.back);
         for surface in &scene.surfaces {
-            let normal = fronts.next().map_or(glam::DVec3::Z, |p| p.normal);
-            let triangles = surface.corners.indices().len() - 2;
-            backing.extend(std::iter::repeat_n(
-                Backing {
-                    normal,
-                    sides: surface.sides,
-                },
-                triangles,
-            ));
+            let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
+            let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
+            let side = Backing {
+                normal: vector_area(&corners).normalize_or(DVec3::Z),
+                sides: surface.sides,
+            };
+            backing.extend(std::iter::repeat_n(side, corners.len() - 2));
         }
         mesh.mark_buried(0, &buried(&mesh, visibility, &backing, 0));
         let light = Light::new(&mesh);

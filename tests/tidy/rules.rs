@@ -107,7 +107,7 @@ const CLI: &[&str] = &[
 ];
 
 /// Crates that are the language we speak rather than a choice of one room: vectors, threads, derives, a hasher.
-const EVERYWHERE: [&str; 5] = ["glam", "rayon", "serde", "thiserror", "rustc_hash"];
+const EVERYWHERE: [&str; 6] = ["glam", "rayon", "rstar", "rustc_hash", "serde", "thiserror"];
 
 fn imports(files: &[File]) -> Vec<String> {
     let mut broken = Vec::new();
