@@ -36,8 +36,10 @@ fn lamp(sunk: f64, turn: f64) -> Scene {
 fn a_floor_beside_a_box_of_light_stays_black() {
     for (sunk, turn) in [(0.0, 0.0), (0.0, 0.4), (0.2, 0.4)] {
         let scene = lamp(sunk, turn);
-        let mut options = Options::default();
-        options.tolerance = 0.01;
+        let mut options = Options {
+            tolerance: 0.01,
+            ..Options::default()
+        };
         options.limits.max_depth = 3;
         let settings = Settings {
             options,
