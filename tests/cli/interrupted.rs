@@ -37,8 +37,9 @@ fn an_interrupted_solve_writes_the_solution_so_far_and_ends_with_130() {
         sleep(Duration::from_millis(20));
     }
     sleep(Duration::from_secs(1));
-    let kill = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+    // The shell's own `kill`: the program of that name is in a package of its own.
+    let kill = Command::new("sh")
+        .args(["-c", &format!("kill -INT {}", child.id())])
         .status();
     assert!(kill.expect("can be started").success());
 
