@@ -68,6 +68,9 @@ pub(super) struct SolveFlags {
     /// Converged when unshot over emitted power falls below this
     #[arg(long, value_name = "FRACTION", value_parser = not_negative, help_heading = PROGRESS)]
     tolerance: Option<f64>,
+    /// After the last shot, light every vertex of the finished mesh once more by every patch
+    #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
+    regather: Option<bool>,
     /// Stop after this many shots
     #[arg(long, value_name = "N", help_heading = PROGRESS)]
     max_shots: Option<u64>,
@@ -107,6 +110,7 @@ impl SolveFlags {
             distance_factor: or(self.distance_factor, preset.distance_factor),
             shooting: self.shooting.unwrap_or(preset.shooting),
             tolerance: or(self.tolerance, preset.tolerance),
+            regather: self.regather.unwrap_or(preset.regather),
             max_shots: self.max_shots.or(preset.max_shots),
             time_limit: self
                 .time_limit

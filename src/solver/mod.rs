@@ -9,6 +9,7 @@ mod ledger;
 mod observer;
 mod options;
 mod refine;
+mod regather;
 mod run;
 mod shoot;
 mod source;

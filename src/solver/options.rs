@@ -78,6 +78,8 @@ pub struct Options {
     pub shooting: Shooting,
     /// The solve is converged when unshot over emitted power falls below this.
     pub tolerance: f64,
+    /// After the last shot, light every vertex of the finished mesh once more by every patch.
+    pub regather: bool,
     /// At most this many shots.
     pub max_shots: Option<u64>,
     /// At most this long.
@@ -121,6 +123,7 @@ impl Preset {
             distance_factor: 10.0,
             shooting: Shooting::Interpolated,
             tolerance: 0.001,
+            regather: true,
             max_shots: None,
             time_limit: None,
         };
@@ -139,6 +142,7 @@ impl Preset {
                 epsilon_fe: 0.04,
                 distance_factor: 5.0,
                 tolerance: 0.003,
+                regather: false,
                 ..standard
             },
             Preset::Standard => standard,

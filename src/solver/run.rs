@@ -38,19 +38,19 @@ pub enum StopReason {
 
 /// A solve in progress.
 pub struct Solver<'a> {
-    mesh: Mesh,
-    light: Light,
-    visibility: &'a dyn Visibility,
-    options: Options,
-    backing: Vec<Backing>,
+    pub(super) mesh: Mesh,
+    pub(super) light: Light,
+    pub(super) visibility: &'a dyn Visibility,
+    pub(super) options: Options,
+    pub(super) backing: Vec<Backing>,
     /// Area of one square of the frame's unit, m².
-    square_metres: f64,
-    reference: f64,
-    escaped: Power,
-    shots: u64,
-    meshing_shots: u64,
-    rays: u64,
-    started: Instant,
+    pub(super) square_metres: f64,
+    pub(super) reference: f64,
+    pub(super) escaped: Power,
+    pub(super) shots: u64,
+    pub(super) meshing_shots: u64,
+    pub(super) rays: u64,
+    pub(super) started: Instant,
 }
 
 /// What a solve leaves.
@@ -140,7 +140,12 @@ impl<'a> Solver<'a> {
 
     /// Shoots until a reason to stop; keeps `observer` informed.
     pub fn run(mut self, observer: &mut dyn Observer) -> Outcome {
-        let stop_reason = self.shoot_until_stop(observer);
+        let mut stop_reason = self.shoot_until_stop(observer);
+        if stop_reason == StopReason::Converged && self.options.regather {
+            if self.regather(observer) == Control::Stop {
+                stop_reason = StopReason::Interrupted;
+            }
+        }
         let ledger = Ledger::balance(&self.mesh, &self.light, self.escaped, self.square_metres);
         Outcome {
             mesh: self.mesh,
@@ -192,57 +197,58 @@ impl<'a> Solver<'a> {
 
     /// Adds the contribution of one patch everywhere, and refines where it falls.
     fn shoot(&mut self, shooter: usize, power: f64, observer: &mut dyn Observer) -> Control {
-        let thresholds = self.source_thresholds();
-        let source = source_of(&self.mesh, &self.light, shooter, &self.options, &thresholds);
+        let sampler = self.sampler();
+        let source = source_of(
+            &self.mesh,
+            &self.light,
+            shooter,
+            &self.options,
+            &sampler.thresholds,
+        );
         self.light.take(&self.mesh, shooter);
-        let extent = self.mesh.frame.extent();
-        let sampler = Sampler {
-            visibility: self.visibility,
-            extent,
-            formula: self.options.formula(),
-            thresholds,
-        };
-        let reached: Vec<bool> = self
-            .mesh
-            .patches
-            .iter()
-            .map(|p| faces(p, &source, extent))
-            .collect();
-        let mut arrived = self.shoot_at_vertices(&sampler, &source, &reached);
+        let reached = self.reached(&source);
+        let mut arrived = self.arrivals(&sampler, &source, &reached);
+        for (vertex, gather) in arrived.iter().enumerate() {
+            self.light.irradiance[vertex] += gather.irradiance;
+            self.light.unshot[vertex] += gather.irradiance;
+        }
         let mut control = Control::Continue;
         if power >= self.options.meshing_power {
             control = self.refine(&sampler, &source, &reached, &mut arrived, observer);
             self.meshing_shots += 1;
         }
-        // The square root shares the rays so that each shot adds its part to the error of the whole.
-        let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
-        let is_open = |point| self.is_open(shooter, point);
-        self.escaped += escaped(
-            &source,
-            self.visibility,
-            &self.backing,
-            is_open,
-            extent,
-            (rays, self.shots as u32),
-        );
+        self.escaped += self.escape(shooter, &source, power, self.shots as u32);
         self.shots += 1;
         control
     }
 
-    fn shoot_at_vertices(
+    pub(super) fn sampler(&self) -> Sampler<'a> {
+        Sampler {
+            visibility: self.visibility,
+            extent: self.mesh.frame.extent(),
+            formula: self.options.formula(),
+            thresholds: self.source_thresholds(),
+        }
+    }
+
+    /// The patches that can see any of the source, planes alone considered.
+    pub(super) fn reached(&self, source: &Source) -> Vec<bool> {
+        let extent = self.mesh.frame.extent();
+        let patches = self.mesh.patches.iter();
+        patches.map(|p| faces(p, source, extent)).collect()
+    }
+
+    /// What a source gives to each vertex of the patches that it reaches.
+    pub(super) fn arrivals(
         &mut self,
         sampler: &Sampler,
         source: &Source,
         reached: &[bool],
     ) -> Vec<Gather> {
-        let patches = self
-            .mesh
-            .patches
-            .iter()
-            .zip(reached)
-            .filter(|(_, reached)| **reached);
-        let vertices = patches.flat_map(|(patch, _)| patch.vertices.iter().copied());
-        let vertices: Vec<u32> = vertices
+        let patches = self.mesh.patches.iter().zip(reached);
+        let vertices: Vec<u32> = patches
+            .filter(|(_, reached)| **reached)
+            .flat_map(|(patch, _)| patch.vertices.iter().copied())
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();
         let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
@@ -256,12 +262,25 @@ impl<'a> Solver<'a> {
         );
         let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, 0);
-        for (vertex, received) in irradiance.into_iter().enumerate() {
-            arrived[vertex].irradiance = received;
-            self.light.irradiance[vertex] += received;
-            self.light.unshot[vertex] += received;
+        for (gather, received) in arrived.iter_mut().zip(irradiance) {
+            gather.irradiance = received;
         }
         arrived
+    }
+
+    /// What of a source's power, a fraction `power` of the emitted, leaves the scene.
+    pub(super) fn escape(&self, shooter: usize, source: &Source, power: f64, seed: u32) -> Power {
+        // The square root shares the rays so that each shot adds its part to the error of the whole.
+        let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
+        let is_open = |point| self.is_open(shooter, point);
+        escaped(
+            source,
+            self.visibility,
+            &self.backing,
+            is_open,
+            self.mesh.frame.extent(),
+            (rays, seed),
+        )
     }
 
     fn refine(
@@ -327,7 +346,7 @@ impl<'a> Solver<'a> {
             .collect()
     }
 
-    fn emitted(&self) -> Power {
+    pub(super) fn emitted(&self) -> Power {
         self.mesh
             .patches
             .iter()
@@ -335,7 +354,7 @@ impl<'a> Solver<'a> {
             .sum()
     }
 
-    fn progress(&self, unshot: Power) -> Progress {
+    pub(super) fn progress(&self, unshot: Power) -> Progress {
         let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
         Progress {
             shots: self.shots,

@@ -1,0 +1,59 @@
+//! After the last shot: every patch's whole radiosity once more at every vertex of the finished mesh.
+//!
+//! A vertex that was made late has only interpolated what came before it, and what was left unshot has arrived nowhere. One
+//! iteration of E = K (M + ρ E) on the final mesh replaces both, and takes along every vertex in the same state.
+
+use super::observer::{Control, Observer};
+use super::run::Solver;
+use super::source::source_of;
+use super::state::Light;
+use crate::radiometry::{Power, Spectrum};
+
+impl Solver<'_> {
+    /// Gathers; what was there stays if the observer stops it.
+    pub(super) fn regather(&mut self, observer: &mut dyn Observer) -> Control {
+        let whole = Light {
+            irradiance: Vec::new(),
+            unshot: self.light.irradiance.clone(),
+            exitance_unshot: Light::new(&self.mesh).exitance_unshot,
+        };
+        let emitted = self.emitted().element_sum();
+        let unshot: Power = (0..self.mesh.patches.len())
+            .map(|patch| self.light.unshot_power(&self.mesh, patch))
+            .sum();
+        let sampler = self.sampler();
+        let mut irradiance = vec![Spectrum::ZERO; self.mesh.vertices.len()];
+        let mut escaped = Power::ZERO;
+        for shooter in 0..self.mesh.patches.len() {
+            let power = whole.unshot_power(&self.mesh, shooter).element_sum() / emitted;
+            if power <= 0.0 {
+                continue;
+            }
+            if observer.progress(&self.progress(unshot)) == Control::Stop {
+                return Control::Stop;
+            }
+            let source = source_of(
+                &self.mesh,
+                &whole,
+                shooter,
+                &self.options,
+                &sampler.thresholds,
+            );
+            let reached = self.reached(&source);
+            let arrived = self.arrivals(&sampler, &source, &reached);
+            for (sum, gather) in irradiance.iter_mut().zip(arrived) {
+                *sum += gather.irradiance;
+            }
+            escaped += self.escape(shooter, &source, power, self.shots as u32 + shooter as u32);
+        }
+        let before = std::mem::replace(&mut self.light.irradiance, irradiance);
+        for ((unshot, now), before) in
+            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(before)
+        {
+            *unshot = *now - before;
+        }
+        self.light.exitance_unshot.fill(false);
+        self.escaped = escaped;
+        Control::Continue
+    }
+}
