@@ -16,11 +16,13 @@ pub(super) struct Backing {
     pub normal: DVec3,
     /// The sides that radiate.
     pub sides: Sides,
+    /// Index into `Scene::surfaces`.
+    pub surface: u32,
 }
 
 /// Whether a ray has ended on a side that does not radiate.
 pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &[Backing]) -> bool {
-    let Backing { normal, sides } = backing[hit.triangle as usize];
+    let Backing { normal, sides, .. } = backing[hit.triangle as usize];
     sides == Sides::Front && normal.dot(ray.direction.as_dvec3()) > 0.0
 }
 

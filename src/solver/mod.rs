@@ -5,6 +5,7 @@
 
 mod burial;
 mod escape;
+mod feelers;
 mod ledger;
 mod observer;
 mod options;

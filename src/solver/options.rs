@@ -102,11 +102,11 @@ impl Preset {
     /// The options of the preset.
     pub const fn options(self) -> Options {
         let standard = Options {
-            epsilon_d: 0.20,
+            epsilon_d: 0.14,
             epsilon_r: 0.02,
             epsilon_v: 0.5,
             visibility_significance: 0.5,
-            local_share: 0.5,
+            local_share: 0.6,
             size_exponent: 1.0,
             quantity: Quantity::Irradiance,
             limits: MeshLimits {
@@ -147,12 +147,12 @@ impl Preset {
             },
             Preset::Standard => standard,
             Preset::Accurate => Options {
-                epsilon_d: 0.08,
+                epsilon_d: 0.05,
                 epsilon_r: 0.005,
                 epsilon_v: 0.3,
                 visibility_significance: 0.2,
                 limits: MeshLimits {
-                    initial_size: 0.05,
+                    initial_size: 0.045,
                     max_depth: 12,
                     min_size: 0.001,
                 },

@@ -2,6 +2,7 @@
 
 use super::burial::buried;
 use super::escape::Backing;
+use super::feelers::Feeler;
 use super::options::{Options, Quantity};
 use super::shoot::{evaluate, shoot_at};
 use super::state::Light;
@@ -20,6 +21,7 @@ pub(super) struct Refinement<'a> {
     pub source: &'a Source,
     pub options: &'a Options,
     pub backing: &'a [Backing],
+    pub feelers: &'a [Feeler],
     pub rays: u64,
 }
 
@@ -36,7 +38,9 @@ impl Refinement<'_> {
             }
         }
         failed.extend(self.visibility_differs(&passed));
+        failed.extend(self.overlooked());
         failed.sort_unstable();
+        failed.dedup();
         self.split(failed)
     }
 
@@ -128,6 +132,29 @@ impl Refinement<'_> {
                 .map(|(element, _)| *element),
         );
         failed
+    }
+
+    /// Elements on which a small surface casts a shadow that their vertices know nothing of.
+    fn overlooked(&self) -> Vec<u32> {
+        let leaf_of = |feeler: &Feeler| self.mesh.leaf_at(feeler.patch, feeler.at.0, feeler.at.1);
+        let knows = |feeler: &Feeler, leaf: u32| {
+            let weighted = self.mesh.interpolate(leaf, feeler.point);
+            let interpolated: Spectrum = weighted
+                .iter()
+                .map(|(v, w)| self.arrived[*v as usize].irradiance * *w)
+                .sum();
+            let difference = (feeler.irradiance - interpolated).abs();
+            !self.exceeds(leaf, difference, self.options.epsilon_r)
+        };
+        let feelers = self.feelers.iter().map(|f| (f, leaf_of(f)));
+        feelers
+            .filter(|(f, leaf)| {
+                self.mesh.may_split(*leaf)
+                    && f.width < self.mesh.longest_side(*leaf)
+                    && !knows(f, *leaf)
+            })
+            .map(|(_, leaf)| leaf)
+            .collect()
     }
 
     fn middle(&self, a: u32, b: u32) -> Lattice {

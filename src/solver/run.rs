@@ -2,6 +2,7 @@
 
 use super::burial::buried;
 use super::escape::{Backing, escaped};
+use super::feelers::feelers;
 use super::ledger::Ledger;
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
@@ -103,12 +104,13 @@ impl<'a> Solver<'a> {
         options: Options,
     ) -> Self {
         let mut backing = Vec::new();
-        for surface in &scene.surfaces {
+        for (number, surface) in (0..).zip(&scene.surfaces) {
             let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
             let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
             let side = Backing {
                 normal: vector_area(&corners).normalize_or(DVec3::Z),
                 sides: surface.sides,
+                surface: number,
             };
             backing.extend(std::iter::repeat_n(side, corners.len() - 2));
         }
@@ -296,6 +298,14 @@ impl<'a> Solver<'a> {
             .leaves()
             .filter(|e| reached[self.mesh.elements[*e as usize].patch as usize])
             .collect();
+        let (feelers, rays) = feelers(
+            &self.mesh,
+            &self.light,
+            &self.backing,
+            (sampler, source),
+            reached,
+        );
+        self.rays += rays;
         while !candidates.is_empty() {
             let mut refinement = Refinement {
                 mesh: &mut self.mesh,
@@ -305,6 +315,7 @@ impl<'a> Solver<'a> {
                 source,
                 options: &self.options,
                 backing: &self.backing,
+                feelers: &feelers,
                 rays: 0,
             };
             candidates = refinement.pass(&candidates);

@@ -10,6 +10,7 @@ mod exact_floor;
 mod furnace;
 mod path_traced;
 mod places;
+mod small_objects;
 mod stopping;
 mod threads;
 mod variants;
