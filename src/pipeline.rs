@@ -87,6 +87,7 @@ pub fn solve(
         reference_irradiance: outcome.reference_irradiance,
         power: PowerReport::new(&outcome.ledger, |p| p.element_sum()),
         power_rgb: PowerReport::new(&outcome.ledger, |p| p.to_array()),
+        audit: outcome.audit,
         options: settings.options.clone(),
         warnings: warnings(scene, &mesh),
     };

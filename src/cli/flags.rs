@@ -71,6 +71,9 @@ pub(super) struct SolveFlags {
     /// After the last shot, light every vertex of the finished mesh once more by every patch
     #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
     regather: Option<bool>,
+    /// Points at which the error is estimated at the end; 0 for no estimate
+    #[arg(long, value_name = "N", help_heading = PROGRESS)]
+    audit_points: Option<usize>,
     /// Stop after this many shots
     #[arg(long, value_name = "N", help_heading = PROGRESS)]
     max_shots: Option<u64>,
@@ -111,6 +114,7 @@ impl SolveFlags {
             shooting: self.shooting.unwrap_or(preset.shooting),
             tolerance: or(self.tolerance, preset.tolerance),
             regather: self.regather.unwrap_or(preset.regather),
+            audit_points: self.audit_points.unwrap_or(preset.audit_points),
             max_shots: self.max_shots.or(preset.max_shots),
             time_limit: self
                 .time_limit

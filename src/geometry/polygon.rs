@@ -47,8 +47,9 @@ pub struct Clipped {
 }
 
 impl Clipped {
-    /// A quad cut by one plane has five corners.
-    pub const MOST: usize = 5;
+    /// A quad cut by one plane has five corners; one that lies in the plane up to rounding may alternate between its sides,
+    /// and then has six.
+    pub const MOST: usize = 6;
 
     /// The corners that are left, in order; fewer than three mean that nothing is left.
     pub fn corners(&self) -> &[DVec3] {
@@ -63,7 +64,7 @@ impl Clipped {
 
 /// The part of a convex polygon (three or four corners) where `height` ≥ 0, for a linear function `height`.
 pub fn clip(corners: &[DVec3], height: impl Fn(DVec3) -> f64) -> Clipped {
-    debug_assert!(corners.len() < Clipped::MOST);
+    debug_assert!(corners.len() <= 4);
     let mut kept = Clipped {
         corners: [DVec3::ZERO; Clipped::MOST],
         len: 0,
@@ -105,6 +106,8 @@ mod tests {
             };
             assert!((left - area).abs() < 1e-15, "x ≥ {offset}: {left}");
         }
+        let rounding = clip(&UNIT, |p| (p.x - 0.5) * (p.y - 0.5));
+        assert_eq!(rounding.corners().len(), 6);
         let corner_cut = clip(&UNIT, |p| 1.5 - p.x - p.y);
         assert_eq!(corner_cut.corners().len(), 5);
         assert!((vector_area(corner_cut.corners()).z - 0.875).abs() < 1e-15);

@@ -1,7 +1,7 @@
 //! What a solve says of itself: `report.json`.
 
 use crate::radiometry::Power;
-use crate::solver::{Ledger, Options, StopReason};
+use crate::solver::{Audit, Ledger, Options, StopReason};
 use serde::{Deserialize, Serialize};
 
 /// The facts of a solve; serialised as `report.json`.
@@ -41,6 +41,8 @@ pub struct Report {
     pub power: PowerReport<f64>,
     /// Power in W, by channel.
     pub power_rgb: PowerReport<[f64; 3]>,
+    /// The estimated error, and sums that should be 1.
+    pub audit: Option<Audit>,
     /// Every option in force.
     pub options: Options,
     /// What was suspicious in the input.

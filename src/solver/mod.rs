@@ -3,12 +3,14 @@
 //! The solver does no I/O and prints nothing; it speaks to an [`Observer`]. Imports `geometry`, `radiometry`, `mesh`,
 //! `form_factor` and the visibility trait.
 
+mod audit;
 mod burial;
 mod escape;
 mod feelers;
 mod ledger;
 mod observer;
 mod options;
+mod outcome;
 mod refine;
 mod regather;
 mod run;
@@ -16,8 +18,10 @@ mod shoot;
 mod source;
 mod state;
 
+pub use audit::{Audit, Span};
 pub use ledger::Ledger;
 pub use observer::{Control, Observer, Progress, Silent};
 pub use options::{FormFactorRule, Options, Preset, Quantity, Shooting};
-pub use run::{Outcome, Solver, StopReason, occluders};
+pub use outcome::{Outcome, StopReason};
+pub use run::{Solver, occluders};
 pub use state::Light;

@@ -80,6 +80,8 @@ pub struct Options {
     pub tolerance: f64,
     /// After the last shot, light every vertex of the finished mesh once more by every patch.
     pub regather: bool,
+    /// Points at which the error is estimated at the end; 0 for no estimate.
+    pub audit_points: usize,
     /// At most this many shots.
     pub max_shots: Option<u64>,
     /// At most this long.
@@ -124,6 +126,7 @@ impl Preset {
             shooting: Shooting::Interpolated,
             tolerance: 0.001,
             regather: true,
+            audit_points: 256,
             max_shots: None,
             time_limit: None,
         };
@@ -131,6 +134,7 @@ impl Preset {
             Preset::Draft => Options {
                 epsilon_d: 0.60,
                 epsilon_r: 0.08,
+                local_share: 0.5,
                 visibility_significance: 1.0,
                 limits: MeshLimits {
                     initial_size: 0.25,

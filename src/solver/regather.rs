@@ -3,20 +3,16 @@
 //! A vertex that was made late has only interpolated what came before it, and what was left unshot has arrived nowhere. One
 //! iteration of E = K (M + ρ E) on the final mesh replaces both, and takes along every vertex in the same state.
 
+use super::audit::Span;
 use super::observer::{Control, Observer};
 use super::run::Solver;
 use super::source::source_of;
-use super::state::Light;
 use crate::radiometry::{Power, Spectrum};
 
 impl Solver<'_> {
     /// Gathers; what was there stays if the observer stops it.
     pub(super) fn regather(&mut self, observer: &mut dyn Observer) -> Control {
-        let whole = Light {
-            irradiance: Vec::new(),
-            unshot: self.light.irradiance.clone(),
-            exitance_unshot: Light::new(&self.mesh).exitance_unshot,
-        };
+        let whole = self.whole();
         let emitted = self.emitted().element_sum();
         let unshot: Power = (0..self.mesh.patches.len())
             .map(|patch| self.light.unshot_power(&self.mesh, patch))
@@ -24,6 +20,7 @@ impl Solver<'_> {
         let sampler = self.sampler();
         let mut irradiance = vec![Spectrum::ZERO; self.mesh.vertices.len()];
         let mut escaped = Power::ZERO;
+        let mut sums = Vec::new();
         for shooter in 0..self.mesh.patches.len() {
             let power = whole.unshot_power(&self.mesh, shooter).element_sum() / emitted;
             if power <= 0.0 {
@@ -41,10 +38,15 @@ impl Solver<'_> {
             );
             let reached = self.reached(&source);
             let arrived = self.arrivals(&sampler, &source, &reached);
-            for (sum, gather) in irradiance.iter_mut().zip(arrived) {
-                *sum += gather.irradiance;
+            let mut received = Power::ZERO;
+            for (vertex, gather) in arrived.iter().enumerate() {
+                irradiance[vertex] += gather.irradiance;
+                received += gather.irradiance.as_dvec3() * self.mesh.weights[vertex];
             }
-            escaped += self.escape(shooter, &source, power, self.shots as u32 + shooter as u32);
+            let lost = self.escape(shooter, &source, power, self.shots as u32 + shooter as u32);
+            escaped += lost;
+            let sent = power * emitted;
+            sums.push(((received + lost).element_sum() / sent, sent));
         }
         let before = std::mem::replace(&mut self.light.irradiance, irradiance);
         for ((unshot, now), before) in
@@ -54,6 +56,7 @@ impl Solver<'_> {
         }
         self.light.exitance_unshot.fill(false);
         self.escaped = escaped;
+        self.sent_sum = Span::of(sums.into_iter());
         Control::Continue
     }
 }

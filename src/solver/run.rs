@@ -1,11 +1,13 @@
 //! The loop: select, shoot, refine, account, stop.
 
+use super::audit::Span;
 use super::burial::buried;
 use super::escape::{Backing, escaped};
 use super::feelers::feelers;
 use super::ledger::Ledger;
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
+use super::outcome::{Outcome, StopReason};
 use super::refine::Refinement;
 use super::shoot::{faces, shoot_at};
 use super::source::source_of;
@@ -18,24 +20,7 @@ use crate::scene::{Corners, Scene};
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::time::Instant;
-
-/// Why a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StopReason {
-    /// Unshot over emitted power fell below the tolerance.
-    Converged,
-    /// The largest number of shots was reached.
-    MaxShots,
-    /// Time was up.
-    TimeLimit,
-    /// The observer asked for it.
-    Interrupted,
-    /// No surface emits: there is nothing to shoot.
-    NoEmitter,
-}
 
 /// A solve in progress.
 pub struct Solver<'a> {
@@ -51,28 +36,8 @@ pub struct Solver<'a> {
     pub(super) shots: u64,
     pub(super) meshing_shots: u64,
     pub(super) rays: u64,
+    pub(super) sent_sum: Option<Span>,
     pub(super) started: Instant,
-}
-
-/// What a solve leaves.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// The refined mesh.
-    pub mesh: Mesh,
-    /// The light on it.
-    pub light: Light,
-    /// Where the power went.
-    pub ledger: Ledger,
-    /// The irradiance that relative thresholds are multiples of, W/m².
-    pub reference_irradiance: f64,
-    /// Shots in all.
-    pub shots: u64,
-    /// Shots that tested the mesh.
-    pub meshing_shots: u64,
-    /// Occlusion rays traced.
-    pub rays: u64,
-    /// Why it ended.
-    pub stop_reason: StopReason,
 }
 
 /// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
@@ -135,6 +100,7 @@ impl<'a> Solver<'a> {
             shots: 0,
             meshing_shots: 0,
             rays: 0,
+            sent_sum: None,
             started: Instant::now(),
             mesh,
         }
@@ -148,6 +114,10 @@ impl<'a> Solver<'a> {
                 stop_reason = StopReason::Interrupted;
             }
         }
+        let audit = match stop_reason {
+            StopReason::NoEmitter | StopReason::Interrupted => None,
+            _ => self.audit(),
+        };
         let ledger = Ledger::balance(&self.mesh, &self.light, self.escaped, self.square_metres);
         Outcome {
             mesh: self.mesh,
@@ -157,6 +127,7 @@ impl<'a> Solver<'a> {
             shots: self.shots,
             meshing_shots: self.meshing_shots,
             rays: self.rays,
+            audit,
             stop_reason,
         }
     }
@@ -355,6 +326,14 @@ impl<'a> Solver<'a> {
             .into_par_iter()
             .map(|p| self.light.unshot_power(&self.mesh, p))
             .collect()
+    }
+
+    /// The light with nothing shot yet.
+    pub(super) fn whole(&self) -> Light {
+        Light {
+            unshot: self.light.irradiance.clone(),
+            ..Light::new(&self.mesh)
+        }
     }
 
     pub(super) fn emitted(&self) -> Power {

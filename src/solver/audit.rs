@@ -1,0 +1,184 @@
+//! A second look at a finished solve, at random points of its surfaces: how large is its error, and does its light add up?
+//!
+//! At each point the light of all patches is gathered with much finer source sampling than the solve's own and compared with
+//! what the mesh interpolates there. The difference is the error of interpolation, of source sampling, of the five-times rule
+//! and of what is unshot, in one: everything but the error of the light that is gathered, which is taken in by
+//! letting the mean error go through all reflections.
+
+use super::feelers::interpolated;
+use super::run::Solver;
+use super::shoot::evaluate;
+use super::source::source_of;
+use crate::form_factor::{Receiver, Sampler, Source};
+use crate::geometry::jitter;
+use crate::mesh::Mesh;
+use crate::radiometry::{Power, Spectrum};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// How much finer the thresholds ε_fe and ε_fd of the second look are.
+const FINER: f64 = 1.0 / 16.0;
+
+/// The estimated error of a solution, from points spread over all that receives light.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Audit {
+    /// Points that were looked at.
+    pub points: usize,
+    /// Their mean irradiance, W/m², channels pooled.
+    pub mean_irradiance: f64,
+    /// Estimated RMS error of the irradiance over its mean, channels pooled.
+    pub n_rms: f64,
+    /// The part of it that is the same everywhere: estimated mean error over the mean irradiance.
+    pub bias: f64,
+    /// Sum of the form factors from a point to all that it sees: 1 in a closed scene.
+    pub received_sum: Span,
+    /// What arrives of the power of a patch, and what is found to escape, over that power: 1 for each patch of any scene.
+    /// Known if all light was gathered once more at the end.
+    pub sent_sum: Option<Span>,
+}
+
+/// Least, mean and largest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// The least.
+    pub least: f64,
+    /// The mean.
+    pub mean: f64,
+    /// The largest.
+    pub most: f64,
+}
+
+impl Span {
+    /// The span of weighted values; `None` without weight.
+    pub(super) fn of(values: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (value, weight) in values.filter(|(_, weight)| *weight > 0.0) {
+            (least, most) = (least.min(value), most.max(value));
+            sum += value * weight;
+            weights += weight;
+        }
+        (weights > 0.0).then(|| Self {
+            least,
+            mean: sum / weights,
+            most,
+        })
+    }
+}
+
+impl Solver<'_> {
+    /// Looks again at `options.audit_points` points; `None` if that is 0 or there is no light.
+    pub(super) fn audit(&self) -> Option<Audit> {
+        let places = places(&self.mesh, self.options.audit_points);
+        if places.is_empty() {
+            return None;
+        }
+        let whole = self.whole();
+        let mut fine = self.sampler();
+        fine.thresholds.difference *= FINER;
+        fine.thresholds.estimate *= FINER;
+        let plain = self.sampler();
+        let known: Vec<Spectrum> = places
+            .iter()
+            .map(|p| interpolated(&self.mesh, &self.light.irradiance, p.leaf, p.point))
+            .collect();
+        let receivers: Vec<(Receiver, u32)> = (0u32..)
+            .zip(places.iter().zip(&known))
+            .map(|(number, (place, known))| (place.receiver(&self.mesh, *known), number))
+            .collect();
+        let mut gathered = vec![Power::ZERO; places.len()];
+        let mut factors = vec![0.0; places.len()];
+        for patch in 0..self.mesh.patches.len() {
+            let of = &self.mesh.patches[patch];
+            let unit = Source::new(of.corners(), of.normal, 1, &[Spectrum::ONE; 4]);
+            let add = |sampler: &Sampler, source: &Source, to: &mut dyn FnMut(usize, Spectrum)| {
+                for (number, gather) in (0..).zip(evaluate(sampler, source, &receivers).0) {
+                    to(number, gather.irradiance);
+                }
+            };
+            add(&plain, &unit, &mut |i, e| factors[i] += f64::from(e.x));
+            if whole.unshot_power(&self.mesh, patch) != Power::ZERO {
+                let source = source_of(&self.mesh, &whole, patch, &self.options, &fine.thresholds);
+                add(&fine, &source, &mut |i, e| gathered[i] += e.as_dvec3());
+            }
+        }
+        let count = 3.0 * places.len() as f64;
+        let mean = gathered.iter().sum::<Power>().element_sum() / count;
+        let errors = || known.iter().zip(&gathered).map(|(k, g)| k.as_dvec3() - *g);
+        let square = errors().map(|e| e.length_squared()).sum::<f64>() / count;
+        let off = errors().sum::<Power>().element_sum() / count;
+        let bias = off * self.amplification();
+        let spread = (square - off * off).max(0.0);
+        (mean > 0.0).then(|| Audit {
+            points: places.len(),
+            mean_irradiance: mean,
+            n_rms: (spread + bias * bias).sqrt() / mean,
+            bias: bias / mean,
+            received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or(Span {
+                least: 0.0,
+                mean: 0.0,
+                most: 0.0,
+            }),
+            sent_sum: self.sent_sum,
+        })
+    }
+
+    /// What all reflections make of a unit of light: power that leaves the patches over power emitted.
+    fn amplification(&self) -> f64 {
+        let whole = self.whole();
+        let leaving: Power = (0..self.mesh.patches.len())
+            .map(|patch| whole.unshot_power(&self.mesh, patch))
+            .sum();
+        (leaving.element_sum() / self.emitted().element_sum()).max(1.0)
+    }
+}
+
+/// A random point of a leaf.
+struct Place {
+    leaf: u32,
+    patch: u32,
+    point: DVec3,
+}
+
+impl Place {
+    fn receiver(&self, mesh: &Mesh, known: Spectrum) -> Receiver {
+        Receiver {
+            point: self.point,
+            normal: mesh.patches[self.patch as usize].normal,
+            irradiance: known.max_element(),
+        }
+    }
+}
+
+/// Points spread evenly over all fans, in proportion to their open area.
+fn places(mesh: &Mesh, count: usize) -> Vec<Place> {
+    let triangles: Vec<(u32, [u32; 3], f64)> = mesh
+        .leaves()
+        .flat_map(|leaf| mesh.fan(leaf).map(move |corners| (leaf, corners)))
+        .filter(|(_, corners)| corners.iter().all(|v| !mesh.buried[*v as usize]))
+        .map(|(leaf, corners)| {
+            let [a, b, c] = corners.map(|v| mesh.position(v));
+            (leaf, corners, 0.5 * (b - a).cross(c - a).length())
+        })
+        .collect();
+    let total: f64 = triangles.iter().map(|t| t.2).sum();
+    let step = total / count.max(1) as f64;
+    let mut places = Vec::with_capacity(count);
+    let mut passed = 0.0;
+    for (leaf, corners, area) in triangles {
+        passed += area;
+        while places.len() < count && (places.len() as f64 + 0.5) * step < passed {
+            let [s, t] = jitter(places.len() as u32, 0x5eed);
+            let root = s.sqrt();
+            let weights = [1.0 - root, root * (1.0 - t), root * t];
+            let point = corners
+                .iter()
+                .zip(weights)
+                .map(|(v, w)| mesh.position(*v) * w)
+                .sum();
+            let patch = mesh.elements[leaf as usize].patch;
+            places.push(Place { leaf, patch, point });
+        }
+    }
+    places
+}

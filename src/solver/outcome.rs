@@ -1,0 +1,46 @@
+//! What a solve leaves, and why it ended.
+
+use super::audit::Audit;
+use super::ledger::Ledger;
+use super::state::Light;
+use crate::mesh::Mesh;
+use serde::{Deserialize, Serialize};
+
+/// Why a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StopReason {
+    /// Unshot over emitted power fell below the tolerance.
+    Converged,
+    /// The largest number of shots was reached.
+    MaxShots,
+    /// Time was up.
+    TimeLimit,
+    /// The observer asked for it.
+    Interrupted,
+    /// No surface emits: there is nothing to shoot.
+    NoEmitter,
+}
+
+/// What a solve leaves.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The refined mesh.
+    pub mesh: Mesh,
+    /// The light on it.
+    pub light: Light,
+    /// Where the power went.
+    pub ledger: Ledger,
+    /// The irradiance that relative thresholds are multiples of, W/m².
+    pub reference_irradiance: f64,
+    /// Shots in all.
+    pub shots: u64,
+    /// Shots that tested the mesh.
+    pub meshing_shots: u64,
+    /// Occlusion rays traced.
+    pub rays: u64,
+    /// The estimated error, if it was looked for.
+    pub audit: Option<Audit>,
+    /// Why it ended.
+    pub stop_reason: StopReason,
+}
