@@ -42,4 +42,4 @@ pub mod solution;
 pub mod solver;
 pub mod visibility;
 
-pub use pipeline::{Settings, SolveError, solve};
+pub use pipeline::{Settings, SolveError, solve, solve_to_error};

@@ -68,6 +68,9 @@ pub(super) struct SolveFlags {
     /// Converged when unshot over emitted power falls below this
     #[arg(long, value_name = "FRACTION", value_parser = not_negative, help_heading = PROGRESS)]
     tolerance: Option<f64>,
+    /// Choose the thresholds, in place of a preset, so that the estimated nRMS error of the irradiance is below this
+    #[arg(long, value_name = "PERCENT%|FRACTION", value_parser = error, help_heading = PROGRESS)]
+    pub(super) target_error: Option<f64>,
     /// After the last shot, light every vertex of the finished mesh once more by every patch
     #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
     regather: Option<bool>,
@@ -89,7 +92,11 @@ const PROGRESS: &str = "Shooting";
 impl SolveFlags {
     /// The options in force.
     pub(super) fn options(&self) -> Options {
-        let preset = self.preset.options();
+        self.over(self.preset.options())
+    }
+
+    /// The flags that are given, over options that come from elsewhere.
+    pub(super) fn over(&self, preset: Options) -> Options {
         let or = |flag: Option<f64>, preset: f64| flag.unwrap_or(preset);
         Options {
             epsilon_d: or(self.eps_d, preset.epsilon_d),
@@ -127,6 +134,16 @@ impl SolveFlags {
 /// A value by the name under which reports show it.
 fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|e| e.to_string())
+}
+
+/// A fraction, or a percentage with its sign.
+fn error(text: &str) -> Result<f64, String> {
+    let expected = "an error such as 1% or 0.01";
+    let allowed = |x: f64| x > 0.0;
+    match text.strip_suffix('%') {
+        Some(percent) => number(percent.trim_end(), allowed, expected).map(|x| x / 100.0),
+        None => number(text, allowed, expected),
+    }
 }
 
 fn number(text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {

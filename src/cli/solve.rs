@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::solution::Solution;
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
-use crate::{Settings, solve};
+use crate::{Settings, solve, solve_to_error};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -54,10 +54,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         threads: arguments.threads,
     };
     let mut bar = Bar::new(settings.options.tolerance);
-    let mut solution = solve(&scene, &settings, &mut bar)?;
+    let flags = &arguments.flags;
+    let mut solution = match flags.target_error {
+        None => solve(&scene, &settings, &mut bar)?,
+        Some(target) => {
+            let adjust = |options| flags.over(options);
+            solve_to_error(&scene, &settings, target, &adjust, &mut bar)?
+        }
+    };
     bar.clear();
     for warning in &solution.report.warnings[scene.warnings.len()..] {
         eprintln!("warning: {warning}");
+    }
+    if let Some(target) = solution.report.target.filter(|t| !t.reached) {
+        eprintln!(
+            "warning: the error of {}% was not reached in {} solves",
+            100.0 * target.n_rms,
+            target.rounds
+        );
     }
     solution.report.seconds.load = load;
     write(&mut solution, arguments)?;
@@ -149,9 +163,17 @@ fn summary(solution: &Solution, seconds: f64) -> String {
         StopReason::Interrupted => "interrupted",
         StopReason::NoEmitter => "nothing emits",
     };
+    let estimate = report.audit.map_or(String::new(), |audit| {
+        format!(
+            "estimated error of the irradiance: {:.2}% nRMS, of it {:+.2}% bias, at {} points\n",
+            100.0 * audit.n_rms,
+            100.0 * audit.bias,
+            audit.points
+        )
+    });
     format!(
         "{}{why}: {:.4} W emitted = {:.2}% absorbed + {:.2}% escaped + {:.2}% unshot + {:.2}% residual\n\
-         {} vertices, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {} threads\n",
+         {estimate}{} vertices, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {} threads\n",
         summary_table(&[row]),
         power.emitted,
         percent(power.absorbed),

@@ -11,7 +11,7 @@ mod report;
 pub use file::SolutionError;
 pub use lit_mesh::{LitMesh, LitTriangle, LitVertex};
 pub use probe::{MATCH, Probe, Prober};
-pub use report::{EngineReport, PowerReport, Report, Seconds};
+pub use report::{EngineReport, PowerReport, Report, Seconds, TargetReport};
 
 use crate::mesh::Mesh;
 use crate::scene::Camera;

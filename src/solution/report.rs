@@ -43,10 +43,23 @@ pub struct Report {
     pub power_rgb: PowerReport<[f64; 3]>,
     /// The estimated error, and sums that should be 1.
     pub audit: Option<Audit>,
+    /// The error that was to be reached, if one was.
+    pub target: Option<TargetReport>,
     /// Every option in force.
     pub options: Options,
     /// What was suspicious in the input.
     pub warnings: Vec<String>,
+}
+
+/// What became of `--target-error`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TargetReport {
+    /// The estimated nRMS error that was asked for.
+    pub n_rms: f64,
+    /// Whether the estimate is below it.
+    pub reached: bool,
+    /// Solves that it took; the report is of the last.
+    pub rounds: usize,
 }
 
 /// Who traced the rays.

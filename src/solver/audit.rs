@@ -33,7 +33,7 @@ pub struct Audit {
     /// Sum of the form factors from a point to all that it sees: 1 in a closed scene.
     pub received_sum: Span,
     /// What arrives of the power of a patch, and what is found to escape, over that power: 1 for each patch of any scene.
-    /// Known if all light was gathered once more at the end.
+    /// Known if all light was gathered once more at the end; over patches that send a thousandth of what is emitted.
     pub sent_sum: Option<Span>,
 }
 
@@ -86,11 +86,13 @@ impl Solver<'_> {
             .zip(places.iter().zip(&known))
             .map(|(number, (place, known))| (place.receiver(&self.mesh, *known), number))
             .collect();
+        let levels = self.options.source_levels();
+        let ones = vec![Spectrum::ONE; 1 << (2 * levels)];
         let mut gathered = vec![Power::ZERO; places.len()];
         let mut factors = vec![0.0; places.len()];
         for patch in 0..self.mesh.patches.len() {
             let of = &self.mesh.patches[patch];
-            let unit = Source::new(of.corners(), of.normal, 1, &[Spectrum::ONE; 4]);
+            let unit = Source::new(of.corners(), of.normal, levels, &ones);
             let add = |sampler: &Sampler, source: &Source, to: &mut dyn FnMut(usize, Spectrum)| {
                 for (number, gather) in (0..).zip(evaluate(sampler, source, &receivers).0) {
                     to(number, gather.irradiance);

@@ -178,6 +178,42 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps.
+    pub fn at(strictness: f64) -> Self {
+        let [low, high] = if strictness < 1.0 {
+            [Preset::Draft, Preset::Standard]
+        } else {
+            [Preset::Standard, Preset::Accurate]
+        }
+        .map(Preset::options);
+        let way = if strictness < 1.0 {
+            strictness
+        } else {
+            strictness - 1.0
+        };
+        let between = |of: fn(&Options) -> f64| of(&low) * (of(&high) / of(&low)).powf(way);
+        let depth = |of: &Options| f64::from(of.limits.max_depth);
+        let nearer = if way < 0.5 { &low } else { &high };
+        Options {
+            epsilon_d: between(|o| o.epsilon_d),
+            epsilon_r: between(|o| o.epsilon_r),
+            epsilon_v: between(|o| o.epsilon_v),
+            visibility_significance: between(|o| o.visibility_significance),
+            local_share: between(|o| o.local_share),
+            limits: MeshLimits {
+                initial_size: between(|o| o.limits.initial_size),
+                max_depth: (depth(&low) + (depth(&high) - depth(&low)) * way).round() as u32,
+                min_size: between(|o| o.limits.min_size),
+            },
+            meshing_power: between(|o| o.meshing_power),
+            epsilon_fd: between(|o| o.epsilon_fd),
+            epsilon_fe: between(|o| o.epsilon_fe),
+            distance_factor: between(|o| o.distance_factor),
+            tolerance: between(|o| o.tolerance),
+            ..nearer.clone()
+        }
+    }
+
     /// The formula that the options name.
     pub fn formula(&self) -> Formula {
         match self.form_factor {

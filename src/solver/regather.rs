@@ -45,8 +45,10 @@ impl Solver<'_> {
             }
             let lost = self.escape(shooter, &source, power, self.shots as u32 + shooter as u32);
             escaped += lost;
-            let sent = power * emitted;
-            sums.push(((received + lost).element_sum() / sent, sent));
+            if power > 1e-3 {
+                let sent = power * emitted;
+                sums.push(((received + lost).element_sum() / sent, sent));
+            }
         }
         let before = std::mem::replace(&mut self.light.irradiance, irradiance);
         for ((unshot, now), before) in

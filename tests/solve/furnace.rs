@@ -15,7 +15,7 @@ const EXITANCE: f32 = 1.0;
 const REFLECTANCE: f32 = 0.5;
 
 /// A room of 2 m by 1 m by 1.5 m, seen from inside.
-fn cuboid() -> Scene {
+pub(super) fn cuboid() -> Scene {
     let mut scene = empty();
     let grey = add_grey(&mut scene, REFLECTANCE, EXITANCE);
     add_cuboid(

@@ -6,6 +6,7 @@ mod common;
 mod conforming;
 mod contact;
 mod energy;
+mod estimate;
 mod exact_floor;
 mod furnace;
 mod path_traced;

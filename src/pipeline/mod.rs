@@ -1,4 +1,9 @@
 //! From a scene to its solution in one call: mesh, visibility, solve, report.
+//! [`solve_to_error`] repeats it until the estimated error is small enough.
+
+mod target;
+
+pub use target::solve_to_error;
 
 use crate::mesh::Mesh;
 use crate::scene::Scene;
@@ -88,6 +93,7 @@ pub fn solve(
         power: PowerReport::new(&outcome.ledger, |p| p.element_sum()),
         power_rgb: PowerReport::new(&outcome.ledger, |p| p.to_array()),
         audit: outcome.audit,
+        target: None,
         options: settings.options.clone(),
         warnings: warnings(scene, &mesh),
     };
