@@ -1,12 +1,12 @@
-//! How accurate the presets are: solves a scene and compares the irradiance with a table of reference values.
+//! How accurate the presets are: solves scenes and compares the irradiance with tables of reference values.
 //!
 //! ```text
-//! cargo run --release --example accuracy -- SCENE POINTS.csv [--preset P]... [--engine E] [--threads N] [--tolerance T]
-//! cargo run --release --example accuracy -- --emission       [--preset P]... [--engine E] [--threads N] [--tolerance T]
+//! cargo run --release --example accuracy -- [SCENE POINTS.csv] [--preset P]... [--engine E] [--threads N] [--tolerance T]
 //! ```
 //!
-//! POINTS.csv has the columns x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b: places in scene units, irradiance and its standard
-//! error, which is taken out of the errors in quadrature. `--emission` compares the scene Emission with its exact floor.
+//! Without a scene, all bundled ones are compared: Emission with its exact floor at least 10 cm from the lights, the others with
+//! the path-traced tables in `tests/data`. POINTS.csv has the columns x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b: places in scene units, irradiance and its standard
+//! error, which is taken out of the errors in quadrature.
 //! nRMS is the RMS error over the mean reference, rmsRel the RMS of the relative error, bias the mean error over the mean
 //! reference; max is the largest relative error. Three channels are pooled.
 
@@ -25,7 +25,6 @@ use std::path::PathBuf;
 #[derive(Default)]
 struct Request {
     files: Vec<PathBuf>,
-    emission: bool,
     presets: Vec<Preset>,
     engine: EngineChoice,
     threads: usize,
@@ -34,12 +33,17 @@ struct Request {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let request = request()?;
-    let (scene, samples) = task(&request)?;
-    println!("{} ({} points)", scene.name, samples.len());
     println!(
-        "| preset | elements | vertices | Mrays | seconds | nRMS % | rmsRel % | bias % | max % | missed |"
+        "| scene | preset, engine | elements | vertices | Mrays | seconds | nRMS % | rmsRel % | bias % | max % | estimated nRMS % |"
     );
-    println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    println!("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    for (scene, samples) in tasks(&request)? {
+        compare(&scene, &samples, &request)?;
+    }
+    Ok(())
+}
+
+fn compare(scene: &Scene, samples: &[Sample], request: &Request) -> Result<(), Box<dyn Error>> {
     for preset in &request.presets {
         let options = preset.options();
         let options = Options {
@@ -51,11 +55,18 @@ fn main() -> Result<(), Box<dyn Error>> {
             engine: request.engine,
             threads: request.threads,
         };
-        let solution = solve(&scene, &settings, &mut Silent)?;
-        let deviation = Deviation::of(&solution, &samples);
+        let solution = solve(scene, &settings, &mut Silent)?;
+        let deviation = Deviation::of(&solution, samples);
         let report = &solution.report;
+        if deviation.missed > 0 {
+            eprintln!(
+                "{}: {} points lie on no surface",
+                scene.name, deviation.missed
+            );
+        }
         println!(
-            "| {} {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:+.2} | {:.2} | {} |",
+            "| {} | {} {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:+.2} | {:.2} | {:.2} |",
+            scene.name,
             format!("{preset:?}").to_lowercase(),
             report.engine.name,
             report.elements,
@@ -66,21 +77,29 @@ fn main() -> Result<(), Box<dyn Error>> {
             100.0 * deviation.rms_rel,
             100.0 * deviation.bias,
             100.0 * deviation.max_rel,
-            deviation.missed,
+            100.0 * report.audit.map_or(f64::NAN, |audit| audit.n_rms),
         );
     }
     Ok(())
 }
 
-fn task(request: &Request) -> Result<(Scene, Vec<Sample>), Box<dyn Error>> {
-    match &request.files[..] {
-        [] if request.emission => Ok((
-            Scene::load(&common::scene_folder("emission"))?,
-            common::closed_form::emission_floor(),
-        )),
-        [scene, points] if !request.emission => Ok((Scene::load(scene)?, reference::read(points)?)),
-        _ => Err("expected SCENE POINTS.csv, or --emission".into()),
+/// A scene and what is known of it.
+type Task = (Scene, Vec<Sample>);
+
+fn tasks(request: &Request) -> Result<Vec<Task>, Box<dyn Error>> {
+    if let [scene, points] = &request.files[..] {
+        return Ok(vec![(Scene::load(scene)?, reference::read(points)?)]);
     }
+    if !request.files.is_empty() {
+        return Err("expected SCENE POINTS.csv, or neither".into());
+    }
+    let bundled = |name: &str| Scene::load(&common::scene_folder(name));
+    let mut tasks = vec![(bundled("emission")?, common::closed_form::emission_floor())];
+    for name in ["shadow", "huge", "secondary", "geometry", "cornell-box"] {
+        let table = format!("{}_irradiance.csv", name.trim_end_matches("-box"));
+        tasks.push((bundled(name)?, reference::table(&table)));
+    }
+    Ok(tasks)
 }
 
 fn request() -> Result<Request, Box<dyn Error>> {
@@ -93,7 +112,6 @@ fn request() -> Result<Request, Box<dyn Error>> {
                 .ok_or_else(|| format!("{argument} needs a value"))
         };
         match argument.as_str() {
-            "--emission" => request.emission = true,
             "--preset" => request.presets.push(preset(&value()?)?),
             "--engine" => request.engine = value()?.parse()?,
             "--threads" => request.threads = value()?.parse()?,

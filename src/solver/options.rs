@@ -132,7 +132,7 @@ impl Preset {
         };
         match self {
             Preset::Draft => Options {
-                epsilon_d: 0.60,
+                epsilon_d: 0.50,
                 epsilon_r: 0.08,
                 local_share: 0.5,
                 visibility_significance: 1.0,
@@ -146,12 +146,11 @@ impl Preset {
                 epsilon_fe: 0.04,
                 distance_factor: 5.0,
                 tolerance: 0.003,
-                regather: false,
                 ..standard
             },
             Preset::Standard => standard,
             Preset::Accurate => Options {
-                epsilon_d: 0.05,
+                epsilon_d: 0.045,
                 epsilon_r: 0.005,
                 epsilon_v: 0.3,
                 visibility_significance: 0.2,

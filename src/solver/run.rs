@@ -109,10 +109,11 @@ impl<'a> Solver<'a> {
     /// Shoots until a reason to stop; keeps `observer` informed.
     pub fn run(mut self, observer: &mut dyn Observer) -> Outcome {
         let mut stop_reason = self.shoot_until_stop(observer);
-        if stop_reason == StopReason::Converged && self.options.regather {
-            if self.regather(observer) == Control::Stop {
-                stop_reason = StopReason::Interrupted;
-            }
+        if stop_reason == StopReason::Converged
+            && self.options.regather
+            && self.regather(observer) == Control::Stop
+        {
+            stop_reason = StopReason::Interrupted;
         }
         let audit = match stop_reason {
             StopReason::NoEmitter | StopReason::Interrupted => None,

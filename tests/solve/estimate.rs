@@ -13,7 +13,7 @@ fn audit(scene: &Scene, options: Options) -> Audit {
 
 #[test]
 fn the_estimate_is_within_a_factor_of_two_of_the_true_error() {
-    for name in ["cornell-box", "shadow", "secondary"] {
+    for name in ["cornell-box", "shadow", "secondary", "geometry", "huge"] {
         let samples = table(&format!("{}_irradiance.csv", name.trim_end_matches("-box")));
         for preset in [Preset::Draft, Preset::Standard] {
             let solution = solved(&bundled(name), preset.options());

@@ -79,7 +79,7 @@ fn error(solution: &Solution) -> f64 {
 
 /// What a preset may be off at its worst vertex, in the cuboid and in the L.
 ///
-/// In the draft, a vertex made by a late shot has what came before interpolated, and no single shot is uniform. In the L a
+/// In the L a
 /// wall is seen around a corner: a cell of the source of which an eighth is hidden may count as seen. Finer source cells
 /// (a tenth of ε_fe and ε_fd) bring it down.
 fn assert_uniform(engine: EngineChoice, preset: Preset, bounds: [f64; 2]) {
