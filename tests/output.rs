@@ -107,6 +107,7 @@ struct Ply {
     properties: Vec<String>,
     vertices: Vec<Vec<f64>>,
     faces: Vec<Vec<u32>>,
+    errors: Vec<f32>,
 }
 
 fn parse_ply(bytes: &[u8]) -> Result<Ply, Box<dyn Error>> {
@@ -122,14 +123,16 @@ fn parse_ply(bytes: &[u8]) -> Result<Ply, Box<dyn Error>> {
         properties: vec![],
         vertices: vec![],
         faces: vec![],
+        errors: vec![],
     };
-    let (mut types, mut counts) = (vec![], vec![]);
+    let (mut types, mut counts, mut errors) = (vec![], vec![], false);
     for line in header.lines() {
         match line.split(' ').collect::<Vec<_>>()[..] {
             ["ply"] | ["format", "binary_little_endian", "1.0"] => {}
             ["comment", ..] => ply.comments.push(line.into()),
             ["element", "vertex" | "face", count] => counts.push(count.parse::<usize>()?),
             ["property", "list", "uchar", "uint", "vertex_indices"] => {}
+            ["property", "float", "irradiance_error"] => errors = true,
             ["property", kind, name] => {
                 types.push(kind.to_owned());
                 ply.properties.push(name.into());
@@ -154,6 +157,10 @@ fn parse_ply(bytes: &[u8]) -> Result<Ply, Box<dyn Error>> {
         let corners = take(1)[0];
         let face = (0..corners).map(|_| Ok(u32::from_le_bytes(take(4).as_slice().try_into()?)));
         ply.faces.push(face.collect::<Result<_, Box<dyn Error>>>()?);
+        if errors {
+            ply.errors
+                .push(f32::from_le_bytes(take(4).as_slice().try_into()?));
+        }
     }
     assert_eq!(body.next(), None, "nothing follows the last face");
     Ok(ply)
@@ -163,7 +170,9 @@ fn parse_ply(bytes: &[u8]) -> Result<Ply, Box<dyn Error>> {
 fn round_trip(mesh: &LitMesh) -> Result<Ply, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("solution.ply");
-    write_ply(&path, mesh, |vertex| [vertex.radiosity.x as u8, 7, 255])?;
+    write_ply(&path, mesh, None, |vertex| {
+        [vertex.radiosity.x as u8, 7, 255]
+    })?;
     let ply = parse_ply(&fs::read(&path)?)?;
     let names = "x y z nx ny nz radiosity_r radiosity_g radiosity_b irradiance_r irradiance_g irradiance_b red green blue";
     assert_eq!(ply.properties.join(" "), names);
@@ -211,6 +220,19 @@ fn ply_far_from_the_origin_keeps_its_shape() -> Outcome {
             mesh.positions[vertex.position as usize].to_array()
         );
     }
+    Ok(())
+}
+
+#[test]
+fn ply_carries_the_error_of_each_triangle() -> Outcome {
+    let mesh = small_mesh(DVec3::ZERO);
+    let errors: Vec<f32> = (1..=mesh.triangles.len()).map(|i| 0.5 / i as f32).collect();
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("solution.ply");
+    write_ply(&path, &mesh, Some(&errors), |_| [0; 3])?;
+    let ply = parse_ply(&fs::read(&path)?)?;
+    assert_eq!(ply.errors, errors);
+    assert_eq!(ply.faces.len(), errors.len());
     Ok(())
 }
 

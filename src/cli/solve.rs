@@ -108,7 +108,8 @@ fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError>
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     let lit = solution.lit_mesh();
     let tone = Tone::for_mesh(&lit);
-    write_ply(&folder.join("solution.ply"), &lit, |v| {
+    let errors = solution.triangle_errors(&lit);
+    write_ply(&folder.join("solution.ply"), &lit, errors.as_deref(), |v| {
         tone.colour(radiance_from_radiosity(v.radiosity))
     })?;
     if !arguments.no_pictures {

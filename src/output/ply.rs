@@ -11,20 +11,23 @@ use std::path::Path;
 /// Per vertex: position in scene units, unit normal, radiosity B and irradiance E (W/m², linear Rec. 709, float), and
 /// `colour` of the vertex as 8-bit sRGB for viewers, which ignore the rest. Positions are `float`; only where that
 /// would move a vertex by more than 1e-5 of the mesh's extent (a scene far from its origin) they are `double`.
+/// Per face, where `errors` are given, one a triangle: the estimated RMS error of the irradiance (W/m², float).
 ///
 /// # Errors
 /// When the file cannot be written.
 ///
 /// # Panics
-/// If an index of the mesh is out of range.
+/// If an index of the mesh is out of range, or `errors` has not one for each triangle.
 pub fn write_ply(
     path: &Path,
     mesh: &LitMesh,
+    errors: Option<&[f32]>,
     colour: impl Fn(&LitVertex) -> [u8; 3],
 ) -> Result<(), WriteError> {
     let double = needs_double(&mesh.positions);
+    assert!(errors.is_none_or(|errors| errors.len() == mesh.triangles.len()));
     write_atomically(path, |out| {
-        out.write_all(header(mesh, double).as_bytes())?;
+        out.write_all(header(mesh, double, errors.is_some()).as_bytes())?;
         for vertex in &mesh.vertices {
             write_position(out, mesh.positions[vertex.position as usize], double)?;
             write_floats(out, vertex.normal)?;
@@ -32,17 +35,20 @@ pub fn write_ply(
             write_floats(out, vertex.irradiance)?;
             out.write_all(&colour(vertex))?;
         }
-        for triangle in &mesh.triangles {
+        for (number, triangle) in mesh.triangles.iter().enumerate() {
             out.write_all(&[3])?;
             for corner in triangle.vertices {
                 out.write_all(&corner.to_le_bytes())?;
+            }
+            if let Some(errors) = errors {
+                out.write_all(&errors[number].to_le_bytes())?;
             }
         }
         Ok(())
     })
 }
 
-fn header(mesh: &LitMesh, double: bool) -> String {
+fn header(mesh: &LitMesh, double: bool, errors: bool) -> String {
     let mut header = String::from(
         "ply\n\
          format binary_little_endian 1.0\n\
@@ -69,8 +75,11 @@ fn header(mesh: &LitMesh, double: bool) -> String {
         header += &format!("property uchar {name}\n");
     }
     header += &format!("element face {}\n", mesh.triangles.len());
-    header += "property list uchar uint vertex_indices\nend_header\n";
-    header
+    header += "property list uchar uint vertex_indices\n";
+    if errors {
+        header += "property float irradiance_error\n";
+    }
+    header + "end_header\n"
 }
 
 /// Whether rounding to `f32` would move some position by more than 1e-5 of the extent of them all.

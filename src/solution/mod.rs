@@ -38,4 +38,17 @@ impl Solution {
     pub fn lit_mesh(&self) -> LitMesh {
         conform::conform(&self.mesh, &self.light)
     }
+
+    /// The estimated RMS error of the irradiance on a leaf of the mesh, in W/m², channels pooled; `None` if the solve was not
+    /// audited.
+    pub fn element_error(&self, leaf: u32) -> Option<f64> {
+        let model = self.report.audit?.model;
+        Some(model.at(&self.mesh, &self.light, leaf))
+    }
+
+    /// [`Self::element_error`] for each triangle of `lit`.
+    pub fn triangle_errors(&self, lit: &LitMesh) -> Option<Vec<f32>> {
+        let error = |triangle: &LitTriangle| Some(self.element_error(triangle.element)? as f32);
+        lit.triangles.iter().map(error).collect()
+    }
 }

@@ -17,6 +17,8 @@ pub struct Probe {
     pub irradiance: Spectrum,
     /// Radiosity B = M + ρE, W/m².
     pub radiosity: Spectrum,
+    /// The leaf of the mesh that the point lies on.
+    pub element: u32,
 }
 
 /// Finds the patch at a point; made once for many points.
@@ -82,10 +84,8 @@ impl<'a> Prober<'a> {
         let Solution { mesh, light, .. } = self.solution;
         let of = &mesh.patches[patch as usize];
         let (u, v) = of.coordinates(point);
-        let weighted = mesh.interpolate(
-            mesh.leaf_at(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)),
-            point,
-        );
+        let element = mesh.leaf_at(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
+        let weighted = mesh.interpolate(element, point);
         let irradiance = if weighted.iter().all(|(v, _)| mesh.buried[*v as usize]) {
             Spectrum::ZERO
         } else {
@@ -97,6 +97,7 @@ impl<'a> Prober<'a> {
         Probe {
             irradiance,
             radiosity: of.exitance + of.reflectance * irradiance,
+            element,
         }
     }
 }

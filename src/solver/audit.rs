@@ -5,6 +5,7 @@
 //! and of what is unshot, in one: everything but the error of the light that is gathered, which is taken in by
 //! letting the mean error go through all reflections.
 
+use super::error::{ErrorModel, Squares};
 use super::feelers::interpolated;
 use super::run::Solver;
 use super::shoot::evaluate;
@@ -30,6 +31,8 @@ pub struct Audit {
     pub n_rms: f64,
     /// The part of it that is the same everywhere: estimated mean error over the mean irradiance.
     pub bias: f64,
+    /// How the error is spread over the elements.
+    pub model: ErrorModel,
     /// Sum of the form factors from a point to all that it sees: 1 in a closed scene.
     pub received_sum: Span,
     /// What arrives of the power of a patch, and what is found to escape, over that power: 1 for each patch of any scene.
@@ -111,11 +114,17 @@ impl Solver<'_> {
         let off = errors().sum::<Power>().element_sum() / count;
         let bias = off * self.amplification();
         let spread = (square - off * off).max(0.0);
+        let found = places.iter().zip(errors()).map(|(place, error)| {
+            let squares = Squares::of(&self.mesh, &self.light, place.leaf);
+            (error.length_squared() / 3.0, squares)
+        });
+        let model = ErrorModel::fit(found.collect());
         (mean > 0.0).then(|| Audit {
             points: places.len(),
             mean_irradiance: mean,
             n_rms: (spread + bias * bias).sqrt() / mean,
             bias: bias / mean,
+            model,
             received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or(Span {
                 least: 0.0,
                 mean: 0.0,

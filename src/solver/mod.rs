@@ -5,6 +5,7 @@
 
 mod audit;
 mod burial;
+mod error;
 mod escape;
 mod feelers;
 mod ledger;
@@ -19,6 +20,7 @@ mod source;
 mod state;
 
 pub use audit::{Audit, Span};
+pub use error::ErrorModel;
 pub use ledger::Ledger;
 pub use observer::{Control, Observer, Progress, Silent};
 pub use options::{FormFactorRule, Options, Preset, Quantity, Shooting};

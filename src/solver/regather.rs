@@ -59,6 +59,7 @@ impl Solver<'_> {
         self.light.exitance_unshot.fill(false);
         self.escaped = escaped;
         self.sent_sum = Span::of(sums.into_iter());
+        observer.progress(&self.progress(unshot));
         Control::Continue
     }
 }

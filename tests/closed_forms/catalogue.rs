@@ -173,6 +173,40 @@ fn rectangles_that_share_an_edge_are_c14() {
 }
 
 #[test]
+fn what_goes_and_what_comes_are_the_same() {
+    let pairs = [
+        (
+            "apart",
+            dvec3(0.3, -0.2, 2.0),
+            DVec3::Y,
+            dvec3(1.0, 0.0, 0.4),
+        ),
+        ("near", dvec3(0.1, 0.2, 0.2), DVec3::Y * 0.5, DVec3::X * 0.5),
+        (
+            "cut by the horizon",
+            dvec3(1.5, 0.2, -0.5),
+            DVec3::Z * 2.0,
+            DVec3::Y,
+        ),
+    ];
+    for (what, corner, u, v) in pairs {
+        let i = Parallelogram(DVec3::ZERO, DVec3::X, DVec3::Y);
+        let j = Parallelogram(corner, u, v);
+        // From below the horizon of i, nothing comes back.
+        let hidden = if corner.z < 0.0 { -corner.z / u.z } else { 0.0 };
+        let above = Parallelogram(corner + u * hidden, u * (1.0 - hidden), v);
+        let (there, back) = (i.mean(&j.corners()), above.mean(&i.corners()));
+        assert!(there > 1e-3, "{what}: {there}");
+        close(
+            i.area() * there,
+            above.area() * back,
+            1e-6 * i.area() * there,
+            what,
+        );
+    }
+}
+
+#[test]
 fn coaxial_disks_are_c41() {
     for [receiving, radius, gap, expected] in C41 {
         let disk = many_sided(DVec3::Z * gap, radius, DVec3::Y, DVec3::X);

@@ -55,7 +55,7 @@ fn the_ledger_closes_on_the_scenes() {
         ("shadow", 0.005),
         ("secondary", 0.01),
         ("geometry", 0.005),
-        ("huge", 0.005),
+        ("huge", 0.01),
         ("emission", 0.03),
     ] {
         let report = solved(&bundled(name), draft()).report;

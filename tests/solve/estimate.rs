@@ -3,6 +3,7 @@
 use super::common::reference::{Deviation, table};
 use super::{bundled, furnace, solved};
 use radiosity::scene::Scene;
+use radiosity::solution::Prober;
 use radiosity::solver::{Audit, Options, Preset, Silent};
 use radiosity::{Settings, solve_to_error};
 
@@ -23,6 +24,48 @@ fn the_estimate_is_within_a_factor_of_two_of_the_true_error() {
                 (0.5..=2.0).contains(&(estimate / error)),
                 "{name}, {preset:?}: estimated {estimate:.4}, true {error:.4}"
             );
+        }
+    }
+}
+
+/// Places are sorted by what their elements are said to be off: the quarter with the largest estimates has most of the error,
+/// and in each half the estimate is of the size of the error.
+#[test]
+fn elements_that_are_said_to_be_off_are() {
+    for (name, file) in [
+        ("cornell-box", "cornell_irradiance.csv"),
+        ("shadow", "shadow_irradiance.csv"),
+        ("geometry", "geometry_irradiance.csv"),
+    ] {
+        let solution = solved(&bundled(name), Preset::Standard.options());
+        let prober = Prober::new(&solution);
+        let mut squares: Vec<(f64, f64)> = table(file)
+            .iter()
+            .map(|sample| {
+                let probe = prober
+                    .probe(sample.point, sample.normal)
+                    .expect("on a surface");
+                let error = probe.irradiance.as_dvec3() - sample.irradiance;
+                let noise = sample.standard_error.length_squared();
+                let estimate = solution.element_error(probe.element).expect("was audited");
+                (
+                    estimate.powi(2),
+                    (error.length_squared() - noise).max(0.0) / 3.0,
+                )
+            })
+            .collect();
+        squares.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let sums = |part: &[(f64, f64)]| {
+            let sum = |of: fn(&(f64, f64)) -> f64| part.iter().map(of).sum::<f64>();
+            (sum(|s| s.0), sum(|s| s.1))
+        };
+        let (_, all) = sums(&squares);
+        let (_, worst) = sums(&squares[squares.len() * 3 / 4..]);
+        assert!(worst > 0.35 * all, "{name}: {}", worst / all);
+        for half in squares.chunks(squares.len().div_ceil(2)) {
+            let (estimated, found) = sums(half);
+            let ratio = (estimated / found).sqrt();
+            assert!((0.4..=2.5).contains(&ratio), "{name}: {ratio}");
         }
     }
 }
