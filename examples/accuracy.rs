@@ -13,7 +13,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::reference::{self, Deviation, Sample};
+use common::reference::{self, Deviation, Known, Sample};
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
@@ -83,23 +83,12 @@ fn compare(scene: &Scene, samples: &[Sample], request: &Request) -> Result<(), B
     Ok(())
 }
 
-/// A scene and what is known of it.
-type Task = (Scene, Vec<Sample>);
-
-fn tasks(request: &Request) -> Result<Vec<Task>, Box<dyn Error>> {
-    if let [scene, points] = &request.files[..] {
-        return Ok(vec![(Scene::load(scene)?, reference::read(points)?)]);
+fn tasks(request: &Request) -> Result<Vec<Known>, Box<dyn Error>> {
+    match &request.files[..] {
+        [scene, points] => Ok(vec![(Scene::load(scene)?, reference::read(points)?)]),
+        [] => Ok(reference::bundled()),
+        _ => Err("expected SCENE POINTS.csv, or neither".into()),
     }
-    if !request.files.is_empty() {
-        return Err("expected SCENE POINTS.csv, or neither".into());
-    }
-    let bundled = |name: &str| Scene::load(&common::scene_folder(name));
-    let mut tasks = vec![(bundled("emission")?, common::closed_form::emission_floor())];
-    for name in ["shadow", "huge", "secondary", "geometry", "cornell-box"] {
-        let table = format!("{}_irradiance.csv", name.trim_end_matches("-box"));
-        tasks.push((bundled(name)?, reference::table(&table)));
-    }
-    Ok(tasks)
 }
 
 fn request() -> Result<Request, Box<dyn Error>> {

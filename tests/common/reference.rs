@@ -1,12 +1,16 @@
 //! Tables of reference irradiance, and how far a solution is from them.
 
+use super::closed_form::emission_floor;
+use super::scene_folder;
 use csv::{ReaderBuilder, StringRecord};
 use glam::DVec3;
+use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
 use std::error::Error;
 use std::path::Path;
 
 /// The irradiance at a point, as somebody else knows it.
+#[derive(Clone, Copy)]
 pub struct Sample {
     /// In scene units.
     pub point: DVec3,
@@ -48,6 +52,22 @@ pub fn table(name: &str) -> Vec<Sample> {
         .join("tests/data")
         .join(name);
     read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A scene and what is known of it.
+pub type Known = (Scene, Vec<Sample>);
+
+/// The bundled scenes: Emission with its exact floor, the others with their path-traced tables.
+pub fn bundled() -> Vec<Known> {
+    let scene = |name: &str| {
+        Scene::load(&scene_folder(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    let traced = ["shadow", "huge", "secondary", "geometry", "cornell-box"].map(|name| {
+        let table_name = format!("{}_irradiance.csv", name.trim_end_matches("-box"));
+        (scene(name), table(&table_name))
+    });
+    let exact = (scene("emission"), emission_floor());
+    std::iter::once(exact).chain(traced).collect()
 }
 
 /// Relative errors are asked of samples above this fraction of the mean reference: in an umbra that only third
