@@ -17,6 +17,7 @@ mod refine;
 mod restore;
 
 pub use build::MeshLimits;
+pub use contact::{Piece, Pieces, pieces as split_at_contacts};
 pub use element::{Element, NONE};
 pub use lattice::{Lattice, UNIT};
 pub use patch::Patch;

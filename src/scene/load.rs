@@ -1,8 +1,11 @@
 //! From a path to a [`Scene`]: finds the files, reads them in order and puts together what they say.
 
-use super::settings::{self, Settings};
+use super::settings::{self, Settings, SidesRule};
 use super::text::{TextFile, quote};
-use super::{Scene, SceneError, cameras, duplicates, materials, mtl, obj, obj_guard, sides, split};
+use super::{
+    NamedScene, Names, Scene, SceneError, cameras, duplicates, materials, mtl, obj, obj_guard,
+    sides, split,
+};
 use std::path::{Component, Path, PathBuf};
 
 const SCENE_FILE: &str = "scene.toml";
@@ -18,49 +21,66 @@ impl Scene {
     ///
     /// A [`SceneError`] names the file, the line, what is there and what should be.
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        if path.is_dir() {
-            let scene = path.join(SCENE_FILE);
-            if !scene.is_file() {
-                let found = format!("a folder without {SCENE_FILE}");
-                return Err(SceneError::new(
-                    path,
-                    None,
-                    found,
-                    "a folder with one, a .toml or an .obj file",
-                ));
-            }
-            return load_toml(&scene);
-        }
-        if !path.exists() {
-            let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
-            return Err(SceneError::new(
-                path,
-                None,
-                "no such file or folder",
-                expected,
-            ));
-        }
-        if has_extension(path, "toml") {
-            load_toml(path)
-        } else if has_extension(path, "obj") {
-            assemble(path, None)
-        } else {
-            let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
-            Err(SceneError::new(
-                path,
-                None,
-                "a file of another kind",
-                expected,
-            ))
-        }
+        Ok(load(path, SidesRule::Auto)?.scene)
     }
 }
 
-fn load_toml(path: &Path) -> Result<Scene, SceneError> {
+impl NamedScene {
+    /// Reads a scene as [`Scene::load`] does, with the names of its polygons; but surfaces radiate from the front alone where neither
+    /// the scene nor the material says `front` or `both`. Cameras serve nobody here, materials are not needed.
+    ///
+    /// # Errors
+    ///
+    /// A [`SceneError`] names the file, the line, what is there and what should be.
+    pub fn load(path: &Path) -> Result<NamedScene, SceneError> {
+        load(path, SidesRule::Front)
+    }
+}
+
+/// Reads a scene in which `auto` sides come to `auto`.
+fn load(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
+    if path.is_dir() {
+        let scene = path.join(SCENE_FILE);
+        if !scene.is_file() {
+            let found = format!("a folder without {SCENE_FILE}");
+            return Err(SceneError::new(
+                path,
+                None,
+                found,
+                "a folder with one, a .toml or an .obj file",
+            ));
+        }
+        return load_toml(&scene, auto);
+    }
+    if !path.exists() {
+        let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
+        return Err(SceneError::new(
+            path,
+            None,
+            "no such file or folder",
+            expected,
+        ));
+    }
+    if has_extension(path, "toml") {
+        load_toml(path, auto)
+    } else if has_extension(path, "obj") {
+        assemble(path, None, auto)
+    } else {
+        let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
+        Err(SceneError::new(
+            path,
+            None,
+            "a file of another kind",
+            expected,
+        ))
+    }
+}
+
+fn load_toml(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
     let file = TextFile::read(path, "a scene's .toml file")?;
     let settings = settings::read(&file)?;
     let geometry = geometry_path(&file, &settings)?;
-    assemble(&geometry, Some((&file, &settings)))
+    assemble(&geometry, Some((&file, &settings)), auto)
 }
 
 /// The OBJ file that the settings name: it exists, and below the folder of the settings.
@@ -109,11 +129,15 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 }
 
 /// Reads the geometry and joins it with the settings, if there are any.
-fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Scene, SceneError> {
+fn assemble(
+    path: &Path,
+    settings: Option<(&TextFile, &Settings)>,
+    auto: SidesRule,
+) -> Result<NamedScene, SceneError> {
     // Check the OBJ file, read its materials, then its polygons.
     let mut warnings = Vec::new();
     let file = TextFile::read(path, "an .obj file")?;
-    let checked = obj_guard::check(&file)?;
+    let mut checked = obj_guard::check(&file)?;
     let library = mtl::read(&file, &checked, &mut warnings)?;
     let materials = materials::decide(&library, settings)?;
     materials::warn_of_defaults(path, &library, settings.map(|(_, s)| s), &mut warnings);
@@ -121,6 +145,10 @@ fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Sce
     checked
         .unknown
         .report(&mut warnings, path, "line", "of unknown kind skipped");
+    let (groups, group_of) = (
+        std::mem::take(&mut checked.groups),
+        std::mem::take(&mut checked.polygon_groups),
+    );
     let polygons = obj::read(&file, checked, &library)?;
 
     // Split what is not a triangle or a convex planar quad, and decide which sides radiate.
@@ -134,7 +162,24 @@ fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Sce
         };
         return Err(file.error(None, found, "at least one polygon with an area"));
     }
-    sides::decide(&polygons, &repeated, &materials.sides, &mut surfaces);
+    let rules: Vec<SidesRule> = materials
+        .sides
+        .iter()
+        .map(|rule| {
+            if *rule == SidesRule::Auto {
+                auto
+            } else {
+                *rule
+            }
+        })
+        .collect();
+    sides::decide(&polygons, &repeated, &rules, &mut surfaces);
+    let names = Names {
+        file: path.to_path_buf(),
+        groups,
+        group_of,
+        lines: polygons.lines.clone(),
+    };
 
     let (metres_per_unit, cameras) = match settings {
         Some((file, settings)) => (
@@ -162,5 +207,5 @@ fn assemble(path: &Path, settings: Option<(&TextFile, &Settings)>) -> Result<Sce
     if scene.cameras.is_empty() {
         scene.cameras.push(cameras::overview(scene.bounds()));
     }
-    Ok(scene)
+    Ok(NamedScene { scene, names })
 }

@@ -50,6 +50,7 @@ mod limits;
 mod load;
 mod materials;
 mod mtl;
+mod names;
 mod obj;
 mod obj_guard;
 mod polygon;
@@ -63,6 +64,7 @@ mod warnings;
 mod weld;
 
 pub use error::SceneError;
+pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};
 
 use crate::radiometry::Spectrum;

@@ -7,6 +7,7 @@
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
 use super::{SceneError, limits};
+use rustc_hash::FxHashMap;
 
 /// A checked OBJ file.
 #[derive(Default)]
@@ -17,6 +18,10 @@ pub(super) struct CheckedObj {
     pub face_lines: String,
     /// For every polygon the line where it stands.
     pub polygon_lines: Vec<u32>,
+    /// The names that `g` and `o` give, in order of appearance.
+    pub groups: Vec<String>,
+    /// For every polygon the last of them before it.
+    pub polygon_groups: Vec<Option<u32>>,
     /// What each `mtllib` says, with its line.
     pub libraries: Vec<(usize, String)>,
     /// Every material named by `usemtl` and followed by polygons, in order of appearance.
@@ -28,6 +33,8 @@ pub(super) struct CheckedObj {
     vertices: i64,
     forward: Vec<(usize, i64)>,
     current_material: Option<usize>,
+    current_group: Option<u32>,
+    group_numbers: FxHashMap<String, u32>,
 }
 
 /// A material that polygons of an OBJ file name.
@@ -53,8 +60,12 @@ pub(super) fn check(file: &TextFile) -> Result<CheckedObj, SceneError> {
             "f" => obj.face(words, number),
             "usemtl" => obj.material(rest_of(&line, keyword)),
             "mtllib" => obj.library(rest_of(&line, keyword), number),
-            "vn" | "vt" | "vp" | "o" | "g" | "s" | "l" | "p" | "mg" | "lod" | "bevel"
-            | "c_interp" | "d_interp" | "shadow_obj" | "trace_obj" => Ok(()),
+            "o" | "g" => {
+                obj.group(rest_of(&line, keyword));
+                Ok(())
+            }
+            "vn" | "vt" | "vp" | "s" | "l" | "p" | "mg" | "lod" | "bevel" | "c_interp"
+            | "d_interp" | "shadow_obj" | "trace_obj" => Ok(()),
             _ => {
                 obj.unknown.add(number);
                 Ok(())
@@ -138,6 +149,7 @@ impl CheckedObj {
         let line_in_u32 = u32::try_from(line);
         self.polygon_lines
             .push(line_in_u32.map_err(|_| too_long())?);
+        self.polygon_groups.push(self.current_group);
         match self.current_material {
             Some(used) => self.used_materials[used].polygons.add(line),
             None => self.without_material.add(line),
@@ -175,6 +187,20 @@ impl CheckedObj {
                 index_range(self.vertices),
             )),
         }
+    }
+
+    /// A name may come again; `g` without one ends the group.
+    fn group(&mut self, name: &str) {
+        if name.is_empty() {
+            self.current_group = None;
+            return;
+        }
+        let next = self.groups.len() as u32;
+        let number = *self.group_numbers.entry(name.to_owned()).or_insert(next);
+        if number == next {
+            self.groups.push(name.to_owned());
+        }
+        self.current_group = Some(number);
     }
 
     fn material(&mut self, name: &str) -> Result<(), Fault> {

@@ -56,7 +56,7 @@ const ALIGNED: f64 = 0.99;
 
 /// A convex part of a surface that no line of contact crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Piece {
+pub struct Piece {
     /// Index into `Scene::surfaces`.
     pub surface: u32,
     /// Corners in the frame, counter-clockwise like the surface; a triangle repeats its first.
@@ -87,15 +87,15 @@ impl Piece {
 
 /// The pieces of a scene.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Pieces {
+pub struct Pieces {
     /// In the order of the surfaces.
     pub list: Vec<Piece>,
     /// Surfaces that were left whole although others touch them: too many lines, or lines too close to tell apart.
     pub unsplit: usize,
 }
 
-/// Splits the surfaces of a scene along their lines of contact.
-pub(super) fn pieces(scene: &Scene, frame: &Frame) -> Pieces {
+/// Splits the surfaces of a scene along their lines of contact; the pieces' corners are in the frame.
+pub fn pieces(scene: &Scene, frame: &Frame) -> Pieces {
     let positions: Vec<DVec3> = scene.vertices.iter().map(|v| frame.enter(*v)).collect();
     let reach = REACH * frame.extent();
     let neighbours = Neighbours::new(&scene.surfaces, &positions);
