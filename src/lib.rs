@@ -12,6 +12,7 @@
 //! * [`scene`]: what the file says; [`visibility`]: who sees whom, by Embree, obvhs or brute force
 //! * [`form_factor`]: Eq. (1), Eq. (2), the five-times rule and the adaptively sampled source
 //! * [`mesh`]: patches, quadtrees and the interpolant; [`solver`]: select, shoot, refine, account
+//! * [`matrix`]: form factors between all surfaces, for exchange rather than pictures
 //! * [`solution`]: the result, probing, its report and file; [`output`], [`render`]: files and pictures
 //!
 //! # Conventions
@@ -32,6 +33,7 @@
 pub mod cli;
 pub mod form_factor;
 pub mod geometry;
+pub mod matrix;
 pub mod mesh;
 pub mod output;
 mod pipeline;

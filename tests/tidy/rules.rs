@@ -60,19 +60,20 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 12] = [
+const IMPORTS: [(&str, &[&str]); 13] = [
     ("geometry", &[]),
     ("radiometry", &[]),
     ("scene", &["geometry", "radiometry"]),
     ("visibility", &["geometry"]),
     ("form_factor", &["geometry", "radiometry", "visibility"]),
     ("mesh", &["geometry", "radiometry", "scene"]),
+    ("matrix", SOLVER),
     ("solver", SOLVER),
     (
         "solution",
         &["geometry", "radiometry", "scene", "mesh", "solver"],
     ),
-    ("output", &["radiometry", "scene", "solution"]),
+    ("output", &["radiometry", "scene", "matrix", "solution"]),
     (
         "render",
         &["geometry", "radiometry", "scene", "visibility", "solution"],
@@ -99,6 +100,7 @@ const CLI: &[&str] = &[
     "visibility",
     "form_factor",
     "mesh",
+    "matrix",
     "solver",
     "solution",
     "output",
@@ -280,6 +282,7 @@ fn files_and_streams(files: &[File]) -> Vec<String> {
         "visibility",
         "form_factor",
         "mesh",
+        "matrix",
         "solver",
     ];
     let is_pure = |file: &&File| file.room().is_some_and(|room| pure.contains(&room));

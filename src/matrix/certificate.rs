@@ -1,0 +1,127 @@
+//! What is known about the accuracy of a matrix.
+
+use super::enclosure::Enclosure;
+use super::pair::Kind;
+use serde::Serialize;
+use std::ops::AddAssign;
+
+/// A row sum may differ from 1 by this more than its error estimate, and the scene still counts as closed.
+const CLOSED: f64 = 1e-3;
+
+/// How the pairs of flat pieces were worked out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Tally {
+    /// Facing away from one another, or hidden by one surface: exactly 0.
+    pub nothing: u64,
+    /// Nothing between: analytic.
+    pub unhindered: u64,
+    /// Shadows cut out exactly, integrated over both sides.
+    pub cut: u64,
+    /// Rays traced, since too much lies between.
+    pub sampled: u64,
+    /// Less accurate than asked: the limit of refinement came first.
+    pub limited: u64,
+    /// Rays traced in all.
+    pub rays: u64,
+}
+
+impl Tally {
+    pub(super) fn count(&mut self, kind: Kind) {
+        let slot = match kind {
+            Kind::Nothing => &mut self.nothing,
+            Kind::Unhindered => &mut self.unhindered,
+            Kind::Cut => &mut self.cut,
+            Kind::Sampled => &mut self.sampled,
+            Kind::Limited => &mut self.limited,
+        };
+        *slot += 1;
+    }
+
+    /// Counts each pair once where it was worked out with both of its rows.
+    pub(super) fn halve(&mut self) {
+        for count in [
+            &mut self.nothing,
+            &mut self.unhindered,
+            &mut self.cut,
+            &mut self.sampled,
+            &mut self.limited,
+            &mut self.rays,
+        ] {
+            *count /= 2;
+        }
+    }
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.nothing += other.nothing;
+        self.unhindered += other.unhindered;
+        self.cut += other.cut;
+        self.sampled += other.sampled;
+        self.limited += other.limited;
+        self.rays += other.rays;
+    }
+}
+
+/// Row sums, errors and limits of a matrix.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Σ_j F_ij of each row: 1 in a closed scene, else less by the share that escapes.
+    pub row_sums: Vec<f64>,
+    /// Estimated error of each row: the root of the sum of the squares of its entries' errors.
+    pub row_errors: Vec<f64>,
+    /// Entries (row, column; from 0) that are less accurate than asked.
+    pub limited: Vec<[u32; 2]>,
+    /// Largest |A_i F_ij - A_j F_ji| / max(A_i, A_j): each pair is worked out as one number for both directions, so this is 0 but for rounding.
+    pub reciprocity_residual: f64,
+    /// Share of the flux of all rows, in proportion to their area, that escapes.
+    pub escaped: f64,
+    /// How the pairs were worked out.
+    pub pairs: Tally,
+    #[serde(skip)]
+    weights: Vec<f64>,
+}
+
+impl Certificate {
+    pub(super) fn new(enclosure: &Enclosure) -> Self {
+        let areas: Vec<f64> = enclosure.rows().iter().map(|row| row.area).collect();
+        let total: f64 = areas.iter().sum();
+        Self {
+            row_sums: Vec::with_capacity(areas.len()),
+            row_errors: Vec::with_capacity(areas.len()),
+            limited: Vec::new(),
+            reciprocity_residual: 0.0,
+            escaped: 0.0,
+            pairs: Tally::default(),
+            weights: areas.iter().map(|area| area / total).collect(),
+        }
+    }
+
+    pub(super) fn add(&mut self, row: usize, sum: f64, error: f64, limited: &[u32]) {
+        self.row_sums.push(sum);
+        self.row_errors.push(error);
+        self.limited
+            .extend(limited.iter().map(|column| [row as u32, *column]));
+        self.escaped += self.weights[row] * (1.0 - sum);
+    }
+
+    /// Whether every row sums up to 1, as far as the errors tell.
+    pub fn is_closed(&self) -> bool {
+        let rows = self.row_sums.iter().zip(&self.row_errors);
+        rows.into_iter()
+            .all(|(sum, error)| (sum - 1.0).abs() <= CLOSED + 3.0 * error)
+    }
+
+    /// Least and largest row sum.
+    pub fn sum_range(&self) -> (f64, f64) {
+        let range = |(low, high): (f64, f64), sum: &f64| (low.min(*sum), high.max(*sum));
+        self.row_sums
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), range)
+    }
+
+    /// Largest error of a row.
+    pub fn largest_error(&self) -> f64 {
+        self.row_errors.iter().copied().fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,50 @@
+//! Why there is no matrix.
+
+use super::Options;
+use crate::visibility::VisibilityError;
+use thiserror::Error;
+
+/// Why a scene could not be made ready.
+#[derive(Debug, Error)]
+pub enum MatrixError {
+    /// The visibility engine could not be built.
+    #[error(transparent)]
+    Visibility(#[from] VisibilityError),
+    /// The threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// The system's reason.
+        reason: String,
+    },
+    /// There is no surface.
+    #[error("no surface radiates: there is nothing to compute form factors of")]
+    NothingRadiates,
+    /// An option that cannot be met.
+    #[error("{name} is {found}; expected {expected}")]
+    Option {
+        /// Which.
+        name: &'static str,
+        /// What it is.
+        found: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+}
+
+impl Options {
+    pub(super) fn check(&self) -> Result<(), MatrixError> {
+        let positive = |name, found: f64| match found.is_finite() && found > 0.0 {
+            true => Ok(()),
+            false => Err(MatrixError::Option {
+                name,
+                found,
+                expected: "a positive number",
+            }),
+        };
+        positive("tolerance", self.tolerance)?;
+        self.max_area
+            .map_or(Ok(()), |area| positive("max_area", area))
+    }
+}

@@ -1,0 +1,262 @@
+//! The visible share of a pair with surfaces between: two independent quadratures, one over each facet, that must agree.
+//!
+//! From a point of one facet the visible part of the other is known exactly ([`super::visible`]), so only the integral over the
+//! point is left. It is smooth from the side that is farther from what lies between and nearly a step from the nearer one;
+//! where the two sides agree, both are right. Where they do not, the smoother one is refined until it is stable; if that is still not
+//! what the other says, as happens where all points of one side miss a sliver, the other is refined too.
+//!
+//! What the pair would exchange unhindered is known beforehand. Where the same points come to something else, as they do near a
+//! common edge, the difference is visible as far as the tiles are that caused it.
+
+use super::convex::Convex;
+use super::facet::Facet;
+use super::look::{Eyes, Sums, View};
+use super::pair::Kind;
+use super::rays::Sampler;
+use super::space::Space;
+use super::visible::TooIntricate;
+
+/// With more surfaces than this between, rays are traced instead.
+const MOST_CUT: usize = 64;
+
+/// How often a tile may be quartered.
+const DEEPEST: u32 = 5;
+
+/// What four points that see alike may have missed, in units of the tile and of what its corners see otherwise: a fifth of the tile lies
+/// outside of them, where a shadow that reaches two corners grows from nothing.
+const BETWEEN_POINTS: f64 = 0.2;
+
+/// What nine points may have missed of a shadow that four of them did not meet: the tenth of the tile that lies beyond them.
+const MISSED: f64 = 0.1;
+
+/// Where the sides differ, both are refined to this fraction of the tolerance.
+const FINER: f64 = 0.1;
+
+/// The error of the quarters over what they changed: a kink runs through two of the four, where it matters an eighth as much.
+const GAIN: f64 = 1.0 / 3.0;
+
+/// What of a tolerance each quarter may use: a kink runs through twice as many cells on each level, with errors of either sign.
+const SHARED: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// What came out.
+pub(super) struct Share {
+    /// The share of the unhindered exchange that is left, 0 to 1.
+    pub visible: f64,
+    pub error: f64,
+    pub kind: Kind,
+    pub rays: u64,
+}
+
+impl Share {
+    /// A share with its error, found by cutting.
+    fn of((visible, error): (f64, f64), tolerance: f64) -> Self {
+        let kind = if error <= tolerance {
+            Kind::Cut
+        } else {
+            Kind::Limited
+        };
+        Self {
+            visible,
+            error,
+            kind,
+            rays: 0,
+        }
+    }
+}
+
+/// Finds visible shares.
+pub(super) struct Looker<'a> {
+    space: &'a Space,
+    eyes: Eyes<'a>,
+    /// What lies between, in the order in which it is cut out from either side.
+    orders: [Vec<u32>; 2],
+    sampler: Sampler<'a>,
+}
+
+impl<'a> Looker<'a> {
+    pub fn new(space: &'a Space) -> Self {
+        Self {
+            space,
+            eyes: Eyes::new(space),
+            orders: Default::default(),
+            sampler: Sampler::new(space),
+        }
+    }
+
+    /// The share of `whole`, what two facets exchange unhindered, that passes the surfaces between, to within `tolerance`; `key`
+    /// seeds jitter.
+    pub fn share(
+        &mut self,
+        facets: [&Facet; 2],
+        between: &[u32],
+        whole: f64,
+        tolerance: f64,
+        key: [u32; 2],
+    ) -> Share {
+        if between.len() <= MOST_CUT
+            && let Ok(share) = self.cut(facets, between, whole, tolerance)
+        {
+            return share;
+        }
+        self.sampler.share(facets, tolerance, key)
+    }
+
+    fn cut(
+        &mut self,
+        [a, b]: [&Facet; 2],
+        between: &[u32],
+        whole: f64,
+        tolerance: f64,
+    ) -> Result<Share, TooIntricate> {
+        let mut orders = std::mem::take(&mut self.orders);
+        for (order, eye) in orders.iter_mut().zip([a, b]) {
+            // What faces the eye hides the backs of solids: cut out first, it leaves nothing for them to cut.
+            order.clear();
+            order.extend_from_slice(between);
+            let occluders = &self.space.occluders;
+            order.sort_by_key(|k| occluders[*k as usize].height(eye.centroid) <= 0.0);
+        }
+        let view = |outer, inner, between| View {
+            outer,
+            inner,
+            between,
+            whole,
+        };
+        let share = self.integrate([view(a, b, &orders[0]), view(b, a, &orders[1])], tolerance);
+        self.orders = orders;
+        share
+    }
+
+    /// Looks from few points of both sides, refines the smoother one where that is not enough, and the other where they differ.
+    fn integrate(&mut self, views: [View<'_>; 2], tolerance: f64) -> Result<Share, TooIntricate> {
+        let [view, back] = views;
+        if self.eyes.is_hidden(view)?
+            && self.eyes.is_hidden(back)?
+            && self.eyes.corners_hidden(view)?
+        {
+            return Ok(Share::of((0.0, 0.0), tolerance));
+        }
+        let coarse = [self.eyes.look_all(view, 2)?, self.eyes.look_all(back, 2)?];
+        if coarse.iter().all(Sums::sees_all) {
+            let error = BETWEEN_POINTS * self.eyes.corners_differ(view, &view.outer.shape, 1.0)?;
+            if error <= tolerance {
+                return Ok(Share::of((1.0, error), tolerance));
+            }
+        }
+        let guess = self.guess(view, coarse[0])?;
+        let other = self.guess(back, coarse[1])?;
+        let (smooth, rough, guess, other) = if guess.1 <= other.1 {
+            (view, back, guess, other)
+        } else {
+            (back, view, other, guess)
+        };
+        let agrees = |found: (f64, f64)| (found.0 - other.0).abs() <= other.1.max(tolerance);
+        if guess.1 <= tolerance && agrees(guess) {
+            return Ok(Share::of(guess, tolerance));
+        }
+        let found = self.refine_all(smooth, tolerance)?;
+        if agrees(found) {
+            return Ok(Share::of(found, tolerance));
+        }
+        let other = self.refine_all(rough, tolerance)?;
+        if (found.0 - other.0).abs() <= found.1 + other.1 + tolerance {
+            return Ok(Share::of(found, tolerance));
+        }
+        // One of them has missed something.
+        let found = self.refine_all(smooth, FINER * tolerance)?;
+        let other = self.refine_all(rough, FINER * tolerance)?;
+        let (mean, half) = (0.5 * (found.0 + other.0), 0.5 * (found.0 - other.0).abs());
+        Ok(Share::of((mean, half.max(found.1)), tolerance))
+    }
+
+    /// The share that one side sees from nine points a tile, and its error.
+    fn guess(&mut self, view: View<'_>, coarse: Sums) -> Result<(f64, f64), TooIntricate> {
+        let fine = self.eyes.look_all(view, 3)?;
+        let share = fine.share();
+        let error = (share - coarse.share())
+            .abs()
+            .hypot(share * (1.0 - share) * (fine.all / view.whole - 1.0));
+        let missed = if coarse.is_plain() { MISSED } else { 0.0 };
+        Ok((share, error.max(missed)))
+    }
+
+    /// The share that one side sees, refined to `tolerance`, with its error.
+    fn refine_all(&mut self, view: View<'_>, tolerance: f64) -> Result<(f64, f64), TooIntricate> {
+        let tiles: Vec<(Convex, Sums)> = view
+            .outer
+            .shape
+            .tiles()
+            .map(|tile| Ok((tile, self.eyes.look(view, &tile, 2)?)))
+            .collect::<Result<_, _>>()?;
+        let mut refined = Refined::default();
+        for (tile, sums) in &tiles {
+            refined.add(self.refine(view, tile, *sums, tolerance * view.whole, 0)?);
+        }
+        Ok(refined.share_of(view.whole))
+    }
+
+    /// Quarters a tile until the error of its visible integral is below `tolerance`.
+    fn refine(
+        &mut self,
+        view: View<'_>,
+        tile: &Convex,
+        coarse: Sums,
+        tolerance: f64,
+        depth: u32,
+    ) -> Result<Refined, TooIntricate> {
+        let quarters = tile.quarters();
+        let mut parts = [Sums::default(); 4];
+        for (part, quarter) in parts.iter_mut().zip(&quarters) {
+            *part = self.eyes.look(view, quarter, 2)?;
+        }
+        let fine: Sums = parts.iter().copied().sum();
+        let mut error = GAIN * (fine.visible - coarse.share() * fine.all).abs();
+        if error <= tolerance && fine.is_plain() {
+            let differ = self.eyes.corners_differ(view, tile, fine.share())?;
+            error = 0.5 * BETWEEN_POINTS * differ * fine.all;
+        }
+        if error <= tolerance || depth == DEEPEST {
+            let unsteady = (fine.all - coarse.all).abs();
+            let off = Sums {
+                visible: unsteady * fine.share(),
+                all: unsteady,
+            };
+            return Ok(Refined {
+                sums: fine,
+                off,
+                error,
+            });
+        }
+        let mut refined = Refined::default();
+        for (part, quarter) in parts.into_iter().zip(&quarters) {
+            refined.add(self.refine(view, quarter, part, SHARED * tolerance, depth + 1)?);
+        }
+        Ok(refined)
+    }
+}
+
+/// An integral with its error.
+#[derive(Debug, Clone, Copy, Default)]
+struct Refined {
+    sums: Sums,
+    /// How much the last refinement of each tile changed what it would see unhindered, and how much of that is visible.
+    off: Sums,
+    error: f64,
+}
+
+impl Refined {
+    fn add(&mut self, part: Self) {
+        self.sums = [self.sums, part.sums].into_iter().sum();
+        self.off = [self.off, part.off].into_iter().sum();
+        self.error = self.error.hypot(part.error);
+    }
+
+    /// The visible share of what is exchanged unhindered, with its error.
+    fn share_of(&self, whole: f64) -> (f64, f64) {
+        let missed = whole - self.sums.all;
+        let seen = self.off.share();
+        let visible = (self.sums.visible + missed * seen) / whole;
+        let doubt = missed * seen * (1.0 - seen);
+        (visible.clamp(0.0, 1.0), self.error.hypot(doubt) / whole)
+    }
+}

@@ -1,0 +1,167 @@
+//! What points of one facet see of the other past what lies between.
+
+use super::convex::Convex;
+use super::facet::Facet;
+use super::gauss::each_node;
+use super::space::Space;
+use super::unhindered::seen;
+use super::visible::{Cutter, TooIntricate};
+use glam::DVec3;
+
+/// Corners are looked from a little inside, since on a common edge a form factor has no value.
+const INWARDS: f64 = 1e-3;
+
+/// Integrals over a tile of one facet of what its points see of the other.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sums {
+    pub visible: f64,
+    pub all: f64,
+}
+
+impl Sums {
+    pub fn sees_all(&self) -> bool {
+        self.visible == self.all
+    }
+
+    /// Whether all points see the same: everything, or nothing.
+    pub fn is_plain(&self) -> bool {
+        self.sees_all() || self.visible == 0.0
+    }
+
+    pub fn share(&self) -> f64 {
+        if self.all > 0.0 {
+            (self.visible / self.all).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+impl std::iter::Sum for Sums {
+    fn sum<I: Iterator<Item = Self>>(iter: I) -> Self {
+        iter.fold(Self::default(), |a, b| Self {
+            visible: a.visible + b.visible,
+            all: a.all + b.all,
+        })
+    }
+}
+
+/// Looks from one facet to the other past what lies between.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub outer: &'a Facet,
+    pub inner: &'a Facet,
+    pub between: &'a [u32],
+    /// What they exchange with nothing between.
+    pub whole: f64,
+}
+
+/// Looks from points; one a thread.
+pub(super) struct Eyes<'a> {
+    space: &'a Space,
+    cutter: Cutter,
+    places: Vec<(DVec3, f64)>,
+}
+
+impl<'a> Eyes<'a> {
+    pub fn new(space: &'a Space) -> Self {
+        Self {
+            space,
+            cutter: Cutter::default(),
+            places: Vec::new(),
+        }
+    }
+
+    /// Looks from the points of a product rule on every tile.
+    pub fn look_all(&mut self, view: View<'_>, points: usize) -> Result<Sums, TooIntricate> {
+        let tiles = view.outer.shape.tiles();
+        tiles.map(|tile| self.look(view, &tile, points)).sum()
+    }
+
+    /// The same on one tile.
+    pub fn look(
+        &mut self,
+        view: View<'_>,
+        tile: &Convex,
+        points: usize,
+    ) -> Result<Sums, TooIntricate> {
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
+        each_node(tile, points, |eye, weight| places.push((eye, weight)));
+        let sums = places
+            .iter()
+            .map(|(eye, weight)| self.look_from(view, *eye, *weight))
+            .sum();
+        self.places = places;
+        sums
+    }
+
+    fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
+        let (normal, extent) = (view.outer.normal, self.space.extent);
+        let occluders = view.between.iter();
+        let occluders = occluders.map(|k| &self.space.occluders[*k as usize]);
+        let visible = self
+            .cutter
+            .seen(eye, normal, view.inner, occluders, extent)?;
+        let all = seen(normal, eye, view.inner.corners());
+        Ok(Sums {
+            visible: weight * visible.unwrap_or(all),
+            all: weight * all,
+        })
+    }
+
+    /// The mean difference between what the corners of a tile see and `share`.
+    pub fn corners_differ(
+        &mut self,
+        view: View<'_>,
+        tile: &Convex,
+        share: f64,
+    ) -> Result<f64, TooIntricate> {
+        let mut sum = 0.0;
+        for eye in corners_inside(tile) {
+            let there = self.look_from(view, eye, 1.0)?;
+            sum += (there.share() - share).abs();
+        }
+        Ok(sum / tile.corners().len() as f64)
+    }
+
+    /// Whether a facet is hidden from all of a few points of the other, which is asked before anything else since it needs
+    /// no form factor.
+    pub fn is_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+        self.places.clear();
+        for tile in view.outer.shape.tiles() {
+            each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
+        }
+        self.all_hidden(view)
+    }
+
+    /// The same from the corners.
+    pub fn corners_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+        let shape = &view.outer.shape;
+        self.places.clear();
+        self.places
+            .extend(corners_inside(shape).map(|eye| (eye, 0.0)));
+        self.all_hidden(view)
+    }
+
+    fn all_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+        let extent = self.space.extent;
+        for (eye, _) in &self.places {
+            let occluders = view.between.iter();
+            let occluders = occluders.map(|k| &self.space.occluders[*k as usize]);
+            if !self.cutter.hides(*eye, view.inner, occluders, extent)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The corners of a tile, moved inwards a little.
+fn corners_inside(tile: &Convex) -> impl Iterator<Item = DVec3> + '_ {
+    let corners = tile.corners();
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    corners
+        .iter()
+        .map(move |corner| corner.lerp(middle, INWARDS))
+}

@@ -1,0 +1,49 @@
+//! Form factors as a product: the matrix of an enclosure, with occlusion, its certificate, and what can be done with it.
+//!
+//! F_ij is the share of the diffuse flux leaving i that arrives at j without being reflected in between; A_i F_ij = A_j F_ji, and a
+//! row sums up to 1 in a closed scene. An [`Enclosure`] is a scene made ready: its [`Row`]s are radiating sides, or groups of them. It
+//! hands out the matrix row by row ([`Enclosure::each_row`]), or whole ([`Enclosure::matrix`]).
+//!
+//! 1. `rows`: sides of surfaces, divided (`divide`), split where others meet them, become flat `facet`s.
+//! 2. `join`: neighbours in one plane become one `occluder`; `tree` finds for a pair of facets those that may come between.
+//! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
+//!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
+//!    agree (`hidden`), or rays are traced where there is too much to cut (`rays`).
+//! 4. `enforce` closes the balance on demand, `balance` solves for radiosity.
+//!
+//! Imports `geometry`, `radiometry`, `scene`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
+
+mod balance;
+mod certificate;
+mod contour;
+mod convex;
+mod dense;
+mod divide;
+mod enclosure;
+mod enforce;
+mod error;
+mod facet;
+mod gauss;
+mod hidden;
+mod join;
+mod linear;
+mod look;
+mod occluder;
+mod options;
+mod overlap;
+mod pair;
+mod rays;
+mod rows;
+mod space;
+mod tree;
+mod unhindered;
+mod visible;
+
+pub use balance::Balance;
+pub use certificate::{Certificate, Tally};
+pub use dense::Matrix;
+pub use enclosure::{Enclosure, FormFactors};
+pub use enforce::{Correction, EnforceError};
+pub use error::MatrixError;
+pub use options::{By, Options};
+pub use rows::Row;

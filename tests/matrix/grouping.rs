@@ -1,0 +1,179 @@
+//! What rows stand for: names, sides, parts.
+
+use crate::setup::{close, portable};
+use radiosity::matrix::{By, Enclosure, MatrixError, Options, Row};
+use radiosity::scene::NamedScene;
+use std::fs;
+
+const OBJ: &str = "mtllib m.mtl\n\
+    v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+    v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    usemtl plain\n\
+    f 1 2 3 4\n\
+    o lid\nusemtl sheet\nf 5 8 7 6\n\
+    g walls\nusemtl plain\nf 1 5 6 2\nf 2 6 7 3\n";
+
+fn load(toml: &str, obj: &str) -> NamedScene {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    fs::write(folder.path().join("s.obj"), obj).expect("can be written");
+    fs::write(
+        folder.path().join("m.mtl"),
+        "newmtl plain\nKd 0.5 0.5 0.5\nnewmtl sheet\nKd 0.2 0.2 0.2\n",
+    )
+    .expect("can be written");
+    fs::write(
+        folder.path().join("scene.toml"),
+        format!("geometry = \"s.obj\"\n{toml}"),
+    )
+    .expect("can be written");
+    NamedScene::load(folder.path()).expect("is a scene")
+}
+
+fn rows(named: &NamedScene, options: Options) -> Vec<Row> {
+    Enclosure::new(named, &options)
+        .expect("radiates")
+        .rows()
+        .to_vec()
+}
+
+fn labels(rows: &[Row]) -> Vec<&str> {
+    rows.iter().map(|row| row.label.as_str()).collect()
+}
+
+#[test]
+fn surfaces_go_by_the_names_of_the_file_in_its_order() {
+    let found = rows(&load("", OBJ), portable());
+    assert_eq!(labels(&found), ["1", "lid", "walls:1", "walls:2"]);
+    assert!(
+        found
+            .iter()
+            .all(|row| (row.area - 1.0).abs() < 1e-12 && !row.back)
+    );
+}
+
+#[test]
+fn a_two_sided_material_gives_two_rows_and_nothing_else_does() {
+    let found = rows(
+        &load("[material.sheet]\nsides = \"both\"\n", OBJ),
+        portable(),
+    );
+    assert_eq!(
+        labels(&found),
+        ["1", "lid", "lid back", "walls:1", "walls:2"]
+    );
+    assert!(found[2].back);
+    let all = rows(&load("sides = \"both\"\n", OBJ), portable());
+    assert_eq!(all.len(), 8);
+}
+
+#[test]
+fn groups_and_materials_collect_surfaces() {
+    let named = load("unit = \"mm\"\n", OBJ);
+    let groups = rows(
+        &named,
+        Options {
+            by: By::Group,
+            ..portable()
+        },
+    );
+    assert_eq!(labels(&groups), ["1", "lid", "walls"]);
+    close(groups[2].area, 2e-6, 1e-18, "two walls of 1 mm²");
+    let materials = rows(
+        &named,
+        Options {
+            by: By::Material,
+            ..portable()
+        },
+    );
+    assert_eq!(labels(&materials), ["plain", "sheet"]);
+    close(materials[0].reflectance.x, 0.5, 1e-7, "reflectance");
+}
+
+#[test]
+fn parts_are_no_larger_than_asked_and_numbered() {
+    let obj = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 3\no slab\nf 1 2 3 4\no fin\nf 1 2 5\n";
+    let found = rows(
+        &load("", obj),
+        Options {
+            max_area: Some(0.3),
+            ..portable()
+        },
+    );
+    let slab: Vec<&Row> = found
+        .iter()
+        .filter(|row| row.label.starts_with("slab/"))
+        .collect();
+    let fin: Vec<&Row> = found
+        .iter()
+        .filter(|row| row.label.starts_with("fin/"))
+        .collect();
+    assert_eq!((slab.len(), fin.len()), (8, 16));
+    assert!(found.iter().all(|row| row.area <= 0.3 + 1e-12));
+    close(
+        slab.iter().map(|row| row.area).sum(),
+        2.0,
+        1e-12,
+        "area of the slab",
+    );
+    close(
+        fin.iter().map(|row| row.area).sum(),
+        3.0,
+        1e-12,
+        "area of the fin",
+    );
+    assert_eq!(labels(&found)[7..9], ["slab/8", "fin/1"]);
+}
+
+#[test]
+fn a_polygon_of_many_corners_is_one_row() {
+    let mut obj = String::new();
+    for k in 0..12 {
+        let angle = f64::from(k) / 12.0 * std::f64::consts::TAU;
+        obj += &format!("v {} {} 0\n", angle.cos(), angle.sin());
+    }
+    obj += "f 1 2 3 4 5 6 7 8 9 10 11 12\nv 0 0 1\nv 0 1 1\nv 1 1 1\nv 1 0 1\nf 13 14 15 16\n";
+    let found = rows(&load("", &obj), portable());
+    assert_eq!(labels(&found), ["1", "2"]);
+    close(found[0].area, 3.0, 1e-12, "area of a twelve-sided polygon");
+}
+
+#[test]
+fn surfaces_that_lie_over_one_another_are_named() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nv 1.5 0.5 0\nv 1.5 1.5 0\nv 0.5 1.5 0\nf 1 2 3 4\nf 5 6 7 8\n";
+    let named = load("", obj);
+    let enclosure = Enclosure::new(&named, &portable()).expect("radiates");
+    let named: Vec<&String> = enclosure
+        .warnings()
+        .iter()
+        .filter(|w| w.contains("overlaps"))
+        .collect();
+    assert_eq!(named.len(), 1);
+    assert!(
+        named[0].contains("s.obj:10") && named[0].contains("s.obj:9"),
+        "{named:?}"
+    );
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    let named = load("", OBJ);
+    for options in [
+        Options {
+            tolerance: 0.0,
+            ..portable()
+        },
+        Options {
+            max_area: Some(f64::NAN),
+            ..portable()
+        },
+        Options {
+            max_area: Some(-1.0),
+            ..portable()
+        },
+    ] {
+        assert!(matches!(
+            Enclosure::new(&named, &options),
+            Err(MatrixError::Option { .. })
+        ));
+    }
+}

@@ -1,0 +1,11 @@
+//! Matrices of form factors: closed forms, independent quadrature, invariants, agreement with the solver, and what they become.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod balance;
+mod closed_forms;
+mod grouping;
+mod invariants;
+mod obstructed;
+mod setup;
