@@ -1,6 +1,7 @@
 //! What can go wrong, and the exit code it gives.
 
 use crate::SolveError;
+use crate::matrix::{EnforceError, MatrixError};
 use crate::output::WriteError;
 use crate::scene::SceneError;
 use crate::solution::SolutionError;
@@ -33,6 +34,10 @@ pub(super) enum CliError {
     #[error(transparent)]
     Solve(#[from] SolveError),
     #[error(transparent)]
+    Matrix(#[from] MatrixError),
+    #[error(transparent)]
+    Enforce(#[from] EnforceError),
+    #[error(transparent)]
     Visibility(#[from] VisibilityError),
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -47,7 +52,11 @@ pub(super) enum CliError {
 impl CliError {
     pub(super) fn code(&self) -> Code {
         match self {
-            CliError::Scene(_) | CliError::Solution(_) | CliError::Input(_) => Code::BadInput,
+            CliError::Scene(_)
+            | CliError::Solution(_)
+            | CliError::Input(_)
+            | CliError::Enforce(_)
+            | CliError::Matrix(MatrixError::NothingRadiates) => Code::BadInput,
             _ => Code::Failure,
         }
     }

@@ -132,7 +132,7 @@ impl SolveFlags {
 }
 
 /// A value by the name under which reports show it.
-fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
+pub(super) fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|e| e.to_string())
 }
 
@@ -155,11 +155,11 @@ fn number(text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |v| v > 0.0 && v < 1e9, "a positive number")
 }
 
-fn not_negative(text: &str) -> Result<f64, String> {
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |v| v >= 0.0, "a number, 0 or more")
 }
 

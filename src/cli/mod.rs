@@ -2,6 +2,8 @@
 
 mod error;
 mod flags;
+mod form_factors;
+mod heat;
 mod info;
 mod pictures;
 mod probe;
@@ -32,6 +34,8 @@ enum Command {
     Render(render::Arguments),
     /// Read the light at points of a solution.
     Probe(probe::Arguments),
+    /// Compute the form factors between all surfaces, with occlusion.
+    FormFactors(form_factors::Arguments),
     /// Say what a scene holds, without solving it.
     Info(info::Arguments),
 }
@@ -42,6 +46,7 @@ pub fn main() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
+        Command::FormFactors(arguments) => form_factors::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
     };
     match result {

@@ -1,16 +1,20 @@
 //! Results as files, one writer a format, and the summary table as text.
 //!
 //! Every file appears whole or not at all ([`write_atomically`]), and every failure names the file and the reason
-//! ([`WriteError`]). Imports `solution` only: pictures come in as plain rows of pixels.
+//! ([`WriteError`]). Imports `solution` and `matrix`: pictures come in as plain rows of pixels.
 
 mod atomic;
 mod exr;
+mod matrix;
 mod ply;
 mod png;
 mod table;
 
 pub use atomic::{WriteError, write_atomically};
 pub use exr::write_exr;
+pub use matrix::{
+    Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,
+};
 pub use ply::write_ply;
 pub use png::write_png;
 pub use table::{SummaryRow, summary_table};

@@ -2,6 +2,7 @@
 
 mod damaged;
 mod interrupted;
+mod matrices;
 mod probing;
 mod refused;
 mod rendering;

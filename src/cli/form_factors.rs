@@ -1,0 +1,276 @@
+//! `radiosity form-factors`.
+
+use super::CliError;
+use super::error::Code;
+use super::flags::{named, positive};
+use super::heat::{self, write_radiosity};
+use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
+use crate::output::{
+    Dropped, MatrixTable, Sink, write_atomically, write_matrix_csv, write_matrix_market, write_npz,
+};
+use crate::scene::NamedScene;
+use crate::visibility::EngineChoice;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A folder with a scene.toml, a .toml, or an .obj; materials are not needed
+    scene: PathBuf,
+    /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// What a row stands for: a surface, a group (g or o) or a material
+    #[arg(long, default_value = "surface", value_parser = named::<By>)]
+    by: By,
+    /// Divide surfaces until no part is larger (m²)
+    #[arg(long, value_name = "M2", value_parser = positive)]
+    max_area: Option<f64>,
+    /// Estimated error that a row may have (root of the sum of its entries' squared errors), and so any entry
+    #[arg(long, default_value_t = 1e-4, value_name = "ERROR", value_parser = positive)]
+    tolerance: f64,
+    /// Change the matrix so that this holds exactly, by least squares; says by how much
+    #[arg(long, value_name = "LAW")]
+    enforce: Option<Law>,
+    /// Solve for radiosity and net flux with the materials' reflectance and emission: FILE.radiosity.csv
+    #[arg(long)]
+    solve: bool,
+    /// The same for heat: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
+    #[arg(long, value_name = "FILE")]
+    temperatures: Option<PathBuf>,
+    /// Leave entries below this out of an .mtx; says what share of the flux they carry
+    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = super::flags::not_negative)]
+    cut_off: f64,
+    /// Who traces rays where there is too much between two surfaces: auto, embree, obvhs or brute-force
+    #[arg(long, default_value = "auto", value_name = "ENGINE")]
+    engine: EngineChoice,
+    /// Threads; 0 for as many as the machine has
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+}
+
+/// What can be enforced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Law {
+    /// A_i F_ij = A_j F_ji
+    Reciprocity,
+    /// Row sums of 1 (with reciprocity), in a closed scene
+    Closure,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Csv,
+    Npz,
+    MatrixMarket,
+}
+
+/// The file beside the matrix.
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    options: [(&'static str, String); 4],
+    closed: bool,
+    certificate: &'a Certificate,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    correction: Option<Correction>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dropped: Option<Dropped>,
+    labels: Vec<&'a str>,
+    areas_m2: Vec<f64>,
+    warnings: &'a [String],
+    seconds: f64,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
+    let format = format_of(&arguments.output)?;
+    let named = NamedScene::load(&arguments.scene)?;
+    let heat = arguments
+        .temperatures
+        .as_deref()
+        .map(heat::read)
+        .transpose()?;
+    let started = Instant::now();
+    let options = Options {
+        by: arguments.by,
+        max_area: arguments.max_area,
+        tolerance: arguments.tolerance,
+        engine: arguments.engine,
+        threads: arguments.threads,
+    };
+    let enclosure = Enclosure::new(&named, &options)?;
+    for warning in enclosure.warnings() {
+        eprintln!("warning: {warning}");
+    }
+    let notes = notes(arguments, &enclosure);
+    let table = MatrixTable {
+        scene: &named.scene.name,
+        rows: enclosure.rows(),
+        notes: &notes,
+    };
+    let (certificate, dropped, correction) =
+        if arguments.enforce.is_some() || arguments.solve || heat.is_some() {
+            // What needs the whole matrix has it in memory, 8 n² bytes.
+            let mut matrix = enclosure.matrix();
+            let correction = match arguments.enforce {
+                Some(Law::Closure) => Some(matrix.enforce_closure()?),
+                Some(Law::Reciprocity) => Some(matrix.enforce_reciprocity()),
+                None => None,
+            };
+            let feed =
+                |sink: &mut Sink<'_>| matrix.each_row(sink).map(|()| matrix.certificate.clone());
+            let (certificate, dropped) = write(format, arguments, &table, feed)?;
+            if arguments.solve || heat.is_some() {
+                write_radiosity(
+                    &beside(&arguments.output, "radiosity.csv"),
+                    &matrix,
+                    heat.as_ref(),
+                )?;
+            }
+            (certificate, dropped, correction)
+        } else {
+            let feed = |sink: &mut Sink<'_>| enclosure.each_row(|row: &FormFactors<'_>| sink(row));
+            let (certificate, dropped) = write(format, arguments, &table, feed)?;
+            (certificate, dropped, None)
+        };
+    let report = Report {
+        scene: table.scene,
+        options: described(arguments),
+        closed: certificate.is_closed(),
+        certificate: &certificate,
+        correction,
+        dropped,
+        labels: table.rows.iter().map(|row| row.label.as_str()).collect(),
+        areas_m2: table.rows.iter().map(|row| row.area).collect(),
+        warnings: enclosure.warnings(),
+        seconds: started.elapsed().as_secs_f64(),
+    };
+    let text = serde_json::to_vec_pretty(&report).map_err(|e| CliError::System(e.to_string()))?;
+    write_atomically(&beside(&arguments.output, "certificate.json"), |out| {
+        out.write_all(&text)
+    })?;
+    print!("{}", summary(&report));
+    Ok(Code::Success)
+}
+
+fn format_of(path: &Path) -> Result<Format, CliError> {
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    match extension.as_str() {
+        "csv" => Ok(Format::Csv),
+        "npz" => Ok(Format::Npz),
+        "mtx" => Ok(Format::MatrixMarket),
+        _ => Err(CliError::Input(format!(
+            "cannot write {}: found the ending `{extension}`, expected .csv, .npz or .mtx",
+            path.display()
+        ))),
+    }
+}
+
+/// `F.csv` → `F.WHAT`.
+fn beside(path: &Path, what: &str) -> PathBuf {
+    path.with_extension(what)
+}
+
+fn write(
+    format: Format,
+    arguments: &Arguments,
+    table: &MatrixTable<'_>,
+    feed: impl FnOnce(&mut Sink<'_>) -> io::Result<Certificate>,
+) -> Result<(Certificate, Option<Dropped>), CliError> {
+    let path = &arguments.output;
+    Ok(match format {
+        Format::Csv => (write_matrix_csv(path, table, feed)?, None),
+        Format::Npz => (write_npz(path, table, feed)?, None),
+        Format::MatrixMarket => {
+            let (certificate, dropped) = write_matrix_market(path, table, arguments.cut_off, feed)?;
+            (certificate, Some(dropped))
+        }
+    })
+}
+
+fn described(arguments: &Arguments) -> [(&'static str, String); 4] {
+    let max_area = arguments
+        .max_area
+        .map_or("none".to_owned(), |area| format!("{area} m^2"));
+    let enforced = match arguments.enforce {
+        None => "nothing",
+        Some(Law::Reciprocity) => "reciprocity",
+        Some(Law::Closure) => "closure",
+    };
+    [
+        ("by", format!("{:?}", arguments.by).to_lowercase()),
+        ("max_area", max_area),
+        ("tolerance", arguments.tolerance.to_string()),
+        ("enforced", enforced.to_owned()),
+    ]
+}
+
+fn notes(arguments: &Arguments, enclosure: &Enclosure) -> Vec<String> {
+    let options = described(arguments)
+        .map(|(name, value)| format!("{name} = {value}"))
+        .join(", ");
+    let engine = enclosure.engine();
+    let certificate = beside(&arguments.output, "certificate.json");
+    vec![
+        format!(
+            "{} rows; {options}; rays, if any, by {} {}",
+            enclosure.rows().len(),
+            engine.name,
+            engine.version
+        ),
+        format!(
+            "row sums, errors and limits: {}",
+            certificate
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+        ),
+    ]
+}
+
+fn summary(report: &Report<'_>) -> String {
+    let certificate = report.certificate;
+    let pairs = &certificate.pairs;
+    let (low, high) = certificate.sum_range();
+    let mut text = format!(
+        "{} rows in {:.2} s; row sums {low:.6} to {high:.6}: {}\n\
+         largest error of a row {:.1e}; {} entries at the limit of refinement\n\
+         pairs of flat pieces: {} exchange nothing, {} unhindered, {} with shadows cut out, {} sampled with {} rays\n",
+        report.labels.len(),
+        report.seconds,
+        match report.closed {
+            true => "closed".to_owned(),
+            false => format!(
+                "open, {:.4} % of the flux escapes",
+                100.0 * certificate.escaped
+            ),
+        },
+        certificate.largest_error(),
+        certificate.limited.len(),
+        pairs.nothing,
+        pairs.unhindered,
+        pairs.cut + pairs.limited,
+        pairs.sampled,
+        pairs.rays,
+    );
+    if let Some(correction) = &report.correction {
+        text += &format!(
+            "enforced: entries changed by {:.1e} at most, {:.1e} rms; row sums within {:.1e} of 1\n",
+            correction.largest, correction.rms, correction.residual
+        );
+    }
+    if let Some(dropped) = &report.dropped {
+        text += &format!(
+            "left out: {} entries with {:.3e} of the flux\n",
+            dropped.entries, dropped.share
+        );
+    }
+    text
+}

@@ -1,0 +1,176 @@
+//! Temperatures in, radiosity and net flux out.
+
+use super::CliError;
+use crate::matrix::{Balance, Matrix};
+use crate::output::write_atomically;
+use crate::radiometry::Power;
+use csv::{ReaderBuilder, WriterBuilder};
+use serde::Deserialize;
+use std::io::Write;
+use std::path::Path;
+
+/// Stefan–Boltzmann constant, W m⁻² K⁻⁴ (exact in the SI of 2019, to these digits).
+const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
+
+/// Temperatures of rows.
+pub(super) struct Heat {
+    file: String,
+    zones: Vec<Zone>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Zone {
+    label: String,
+    #[serde(rename = "temperature_K")]
+    temperature: f64,
+    emissivity: Option<f64>,
+    #[serde(skip)]
+    line: u64,
+}
+
+/// Reads a table with the columns label, temperature_K and perhaps emissivity.
+pub(super) fn read(path: &Path) -> Result<Heat, CliError> {
+    let file = path.display().to_string();
+    let unreadable = |e: csv::Error| CliError::Input(format!("cannot read {file}: {e}"));
+    let mut reader = ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .map_err(unreadable)?;
+    let mut zones = Vec::new();
+    let header = reader.headers().map_err(unreadable)?.clone();
+    for record in reader.records() {
+        let record = record.map_err(unreadable)?;
+        let mut zone: Zone = record.deserialize(Some(&header)).map_err(unreadable)?;
+        zone.line = record.position().map_or(0, csv::Position::line);
+        let bad = |found: String, expected: &str| {
+            Err(CliError::Input(format!(
+                "{file}:{}: found {found}; expected {expected}",
+                zone.line
+            )))
+        };
+        if !(zone.temperature.is_finite() && zone.temperature >= 0.0) {
+            return bad(
+                format!("the temperature {}", zone.temperature),
+                "kelvins, 0 or more",
+            );
+        }
+        if let Some(e) = zone.emissivity.filter(|e| !(*e > 0.0 && *e <= 1.0)) {
+            return bad(format!("the emissivity {e}"), "0 < emissivity <= 1");
+        }
+        zones.push(zone);
+    }
+    Ok(Heat { file, zones })
+}
+
+/// Writes radiosity, irradiance and net flux of every row: three channels of light, or one of heat.
+pub(super) fn write_radiosity(
+    path: &Path,
+    matrix: &Matrix,
+    heat: Option<&Heat>,
+) -> Result<(), CliError> {
+    let table = match heat {
+        None => light_table(matrix),
+        Some(heat) => heat_table(matrix, heat)?,
+    };
+    let mut writer = WriterBuilder::new().from_writer(Vec::new());
+    let broken = |e: csv::Error| CliError::System(format!("cannot make the table: {e}"));
+    for record in &table {
+        writer.write_record(record).map_err(broken)?;
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(|e| CliError::System(format!("cannot make the table: {e}")))?;
+    write_atomically(path, |out| out.write_all(&bytes))?;
+    Ok(())
+}
+
+fn light_table(matrix: &Matrix) -> Vec<Vec<String>> {
+    let quantities = ["exitance", "radiosity", "irradiance", "net_flux"];
+    let units = ["W_m2", "W_m2", "W_m2", "W"];
+    let mut header = vec!["label".to_owned(), "area_m2".to_owned()];
+    for (quantity, unit) in quantities.iter().zip(units) {
+        header.extend(["r", "g", "b"].map(|channel| format!("{quantity}_{channel}_{unit}")));
+    }
+    let lines = matrix
+        .rows
+        .iter()
+        .zip(matrix.balance())
+        .map(|(row, balance)| {
+            let Balance {
+                radiosity,
+                irradiance,
+                net_flux,
+            } = balance;
+            let values =
+                [row.exitance, radiosity, irradiance, net_flux].map(|power| power.to_array());
+            let head = [row.label.clone(), row.area.to_string()];
+            head.into_iter()
+                .chain(values.as_flattened().iter().map(f64::to_string))
+                .collect()
+        });
+    std::iter::once(header).chain(lines).collect()
+}
+
+fn heat_table(matrix: &Matrix, heat: &Heat) -> Result<Vec<Vec<String>>, CliError> {
+    let mut known = vec![None; matrix.len()];
+    for zone in &heat.zones {
+        let Some(row) = matrix.index(&zone.label) else {
+            let (file, line, label) = (&heat.file, zone.line, &zone.label);
+            return Err(CliError::Input(format!(
+                "{file}:{line}: found the label `{label}`; expected one of the matrix's rows"
+            )));
+        };
+        known[row] = Some(zone);
+    }
+    let (mut reflectance, mut exitance) = (Vec::new(), Vec::new());
+    let mut lines = Vec::new();
+    for (row, zone) in matrix.rows.iter().zip(known) {
+        let Some(zone) = zone else {
+            let found = format!(
+                "{}: found no temperature of `{}`; expected one for every row",
+                heat.file, row.label
+            );
+            return Err(CliError::Input(found));
+        };
+        let emissivity = zone
+            .emissivity
+            .unwrap_or(1.0 - row.reflectance.element_sum() / 3.0);
+        let emitted = emissivity * STEFAN_BOLTZMANN * zone.temperature.powi(4);
+        reflectance.push(Power::splat(1.0 - emissivity));
+        exitance.push(Power::splat(emitted));
+        lines.push(vec![
+            row.label.clone(),
+            row.area.to_string(),
+            zone.temperature.to_string(),
+            emissivity.to_string(),
+            emitted.to_string(),
+        ]);
+    }
+    for (line, balance) in lines
+        .iter_mut()
+        .zip(matrix.balance_of(&reflectance, &exitance))
+    {
+        line.extend(
+            [
+                balance.radiosity.x,
+                balance.irradiance.x,
+                balance.net_flux.x,
+            ]
+            .map(|value| value.to_string()),
+        );
+    }
+    let header = [
+        "label",
+        "area_m2",
+        "temperature_K",
+        "emissivity",
+        "exitance_W_m2",
+        "radiosity_W_m2",
+        "irradiance_W_m2",
+        "net_flux_W",
+    ];
+    Ok(std::iter::once(header.map(str::to_owned).to_vec())
+        .chain(lines)
+        .collect())
+}

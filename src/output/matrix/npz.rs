@@ -1,0 +1,102 @@
+//! Arrays for NumPy: an uncompressed zip of `.npy` files.
+
+use super::{Feed, MatrixTable};
+use crate::matrix::Certificate;
+use crate::output::{WriteError, write_atomically};
+use std::io::{self, Seek, Write};
+use std::path::Path;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
+/// (pairs of row and column, from 0). `numpy.load` reads them.
+///
+/// # Errors
+/// When the file cannot be written, or `feed` fails.
+pub fn write_npz(
+    path: &Path,
+    table: &MatrixTable<'_>,
+    feed: impl Feed,
+) -> Result<Certificate, WriteError> {
+    let mut certificate = None;
+    write_atomically(path, |out| {
+        let n = table.rows.len();
+        let mut zip = ZipWriter::new(out);
+        begin(&mut zip, "F", "<f8", &[n, n])?;
+        let known = feed(&mut |row| floats(&mut zip, row.values))?;
+        let areas: Vec<f64> = table.rows.iter().map(|row| row.area).collect();
+        for (name, values) in [
+            ("area", &areas),
+            ("row_sum", &known.row_sums),
+            ("row_error", &known.row_errors),
+        ] {
+            begin(&mut zip, name, "<f8", &[n])?;
+            floats(&mut zip, values)?;
+        }
+        begin(&mut zip, "back", "|b1", &[n])?;
+        let backs: Vec<u8> = table.rows.iter().map(|row| u8::from(row.back)).collect();
+        zip.write_all(&backs)?;
+        labels(&mut zip, table)?;
+        begin(&mut zip, "limited", "<u4", &[known.limited.len(), 2])?;
+        for number in known.limited.as_flattened() {
+            zip.write_all(&number.to_le_bytes())?;
+        }
+        zip.finish().map_err(io::Error::other)?;
+        certificate = Some(known);
+        Ok(())
+    })?;
+    Ok(certificate.expect("the feed has ended well"))
+}
+
+/// Opens the file of an array and writes its head: format 1.0, padded so that the data begin at a multiple of 64.
+fn begin<W: Write + Seek>(
+    zip: &mut ZipWriter<W>,
+    name: &str,
+    kind: &str,
+    shape: &[usize],
+) -> io::Result<()> {
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .large_file(true);
+    zip.start_file(format!("{name}.npy"), options)
+        .map_err(io::Error::other)?;
+    let shape: String = shape.iter().map(|size| format!("{size}, ")).collect();
+    let mut head = format!(
+        "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}",
+        shape.trim_end()
+    );
+    let before = b"\x93NUMPY\x01\x00".len() + 2;
+    let padding = 63 - (before + head.len()) % 64;
+    head.extend(std::iter::repeat_n(' ', padding));
+    head.push('\n');
+    zip.write_all(b"\x93NUMPY\x01\x00")?;
+    zip.write_all(&(head.len() as u16).to_le_bytes())?;
+    zip.write_all(head.as_bytes())
+}
+
+fn floats(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
+    let bytes: Vec<u8> = values
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    out.write_all(&bytes)
+}
+
+/// NumPy's fixed-width text: four bytes a character.
+fn labels<W: Write + Seek>(zip: &mut ZipWriter<W>, table: &MatrixTable<'_>) -> io::Result<()> {
+    let width = table
+        .rows
+        .iter()
+        .map(|row| row.label.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(1);
+    begin(zip, "label", &format!("<U{width}"), &[table.rows.len()])?;
+    for row in table.rows {
+        let codes = row.label.chars().map(u32::from).chain(std::iter::repeat(0));
+        for code in codes.take(width) {
+            zip.write_all(&code.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
