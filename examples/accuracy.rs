@@ -1,7 +1,7 @@
 //! How accurate the presets are: solves scenes and compares the irradiance with tables of reference values.
 //!
 //! ```text
-//! cargo run --release --example accuracy -- [SCENE POINTS.csv] [--preset P]... [--engine E] [--threads N] [--tolerance T]
+//! cargo run --release --example accuracy -- [SCENE POINTS.csv] [--preset P]... [--engine E] [--threads N] [--set OPTION=VALUE]...
 //! ```
 //!
 //! Without a scene, all bundled ones are compared: Emission with its exact floor at least 10 cm from the lights, the others with
@@ -28,7 +28,7 @@ struct Request {
     presets: Vec<Preset>,
     engine: EngineChoice,
     threads: usize,
-    tolerance: Option<f64>,
+    set: Vec<(String, serde_json::Value)>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -45,11 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn compare(scene: &Scene, samples: &[Sample], request: &Request) -> Result<(), Box<dyn Error>> {
     for preset in &request.presets {
-        let options = preset.options();
-        let options = Options {
-            tolerance: request.tolerance.unwrap_or(options.tolerance),
-            ..options
-        };
+        let options = with(preset.options(), &request.set)?;
         let settings = Settings {
             options,
             engine: request.engine,
@@ -104,7 +100,7 @@ fn request() -> Result<Request, Box<dyn Error>> {
             "--preset" => request.presets.push(preset(&value()?)?),
             "--engine" => request.engine = value()?.parse()?,
             "--threads" => request.threads = value()?.parse()?,
-            "--tolerance" => request.tolerance = Some(value()?.parse()?),
+            "--set" => request.set.push(setting(&value()?)?),
             flag if flag.starts_with("--") => return Err(format!("unknown option {flag}").into()),
             file => request.files.push(file.into()),
         }
@@ -113,6 +109,27 @@ fn request() -> Result<Request, Box<dyn Error>> {
         request.presets = vec![Preset::Draft, Preset::Standard];
     }
     Ok(request)
+}
+
+/// NAME=VALUE, the value in JSON; parts of `limits` by their own names.
+fn setting(text: &str) -> Result<(String, serde_json::Value), Box<dyn Error>> {
+    let (name, value) = text.split_once('=').ok_or("--set needs OPTION=VALUE")?;
+    Ok((name.to_owned(), serde_json::from_str(value)?))
+}
+
+fn with(options: Options, set: &[(String, serde_json::Value)]) -> Result<Options, Box<dyn Error>> {
+    let mut json = serde_json::to_value(options)?;
+    for (name, value) in set {
+        let within = if json["limits"].get(name).is_some() {
+            &mut json["limits"]
+        } else {
+            &mut json
+        };
+        *within
+            .get_mut(name)
+            .ok_or_else(|| format!("no option {name}"))? = value.clone();
+    }
+    Ok(serde_json::from_value(json)?)
 }
 
 fn preset(name: &str) -> Result<Preset, String> {

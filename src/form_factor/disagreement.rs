@@ -25,7 +25,10 @@ impl Sampler<'_> {
         state: &mut [State],
     ) -> usize {
         let seen = leaves.iter().filter(|leaf| leaf.seen).count();
-        if seen == 0 || seen == leaves.len() {
+        let large = |leaf: &Leaf| {
+            f64::from(leaf.measure) > limits.difference && source.has_children(leaf.cell)
+        };
+        if seen == 0 || seen == leaves.len() || !leaves.iter().any(large) {
             return leaves.len();
         }
         for leaf in leaves.iter() {
@@ -37,8 +40,7 @@ impl Sampler<'_> {
             mark_ancestors(leaf.cell, state, State::Split);
         }
         let splits = |leaf: &Leaf| {
-            f64::from(leaf.measure) > limits.difference
-                && source.has_children(leaf.cell)
+            large(leaf)
                 && source
                     .neighbours(leaf.cell)
                     .iter()

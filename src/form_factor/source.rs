@@ -154,6 +154,8 @@ pub struct Source {
     normal: DVec3,
     levels: u32,
     cells: Vec<Cell>,
+    /// Radiosity of the cells of the deepest level, close together in memory.
+    finest: Vec<Spectrum>,
 }
 
 impl Source {
@@ -204,6 +206,7 @@ impl Source {
             normal,
             levels,
             cells,
+            finest: finest.to_vec(),
         }
     }
 
@@ -239,11 +242,16 @@ impl Source {
             SourceShape::Triangle if s + t > 1.0 => (1.0 - s, 1.0 - t),
             _ => (s, t),
         };
-        while self.has_children(index) && self.cell(index).variation > 0.0 {
+        while self.has_children(index) {
             let (child, s2, t2) = match self.shape {
                 SourceShape::Quad => {
-                    let child = [[0, 3], [1, 2]][usize::from(s >= 0.5)][usize::from(t >= 0.5)];
-                    (child, (2.0 * s).fract(), (2.0 * t).fract())
+                    let (right, upper) = (s >= 0.5, t >= 0.5);
+                    let child = [[0, 3], [1, 2]][usize::from(right)][usize::from(upper)];
+                    (
+                        child,
+                        2.0 * s - f64::from(right),
+                        2.0 * t - f64::from(upper),
+                    )
                 }
                 SourceShape::Triangle if s > 0.5 => (1, 2.0 * s - 1.0, 2.0 * t),
                 SourceShape::Triangle if t > 0.5 => (2, 2.0 * s, 2.0 * t - 1.0),
@@ -252,7 +260,7 @@ impl Source {
             };
             (index, s, t) = (4 * index + 1 + child, s2, t2);
         }
-        self.cell(index).radiosity
+        self.finest[index as usize - level_start(self.levels)]
     }
 
     /// Whether a cell can still be split.

@@ -38,6 +38,7 @@ impl Mesh {
             buried: Vec::new(),
             weights: Vec::new(),
             full_weights: Vec::new(),
+            touched: Vec::new(),
             continuation: Default::default(),
             at: FxHashMap::default(),
             limits,
@@ -60,7 +61,8 @@ impl Mesh {
             }
         }
         mesh.split_to_initial_size();
-        mesh.finish_topology();
+        mesh.finish_topology(0, &[]);
+        mesh.integrate();
         mesh
     }
 
@@ -75,6 +77,7 @@ impl Mesh {
         patch.grid = grid_of(&patch);
         let (columns, rows) = patch.grid;
         self.patches.push(patch);
+        self.touched.push(true);
         if self.patches[id as usize].is_triangle() {
             self.add_root(
                 id,

@@ -60,6 +60,9 @@ pub struct Mesh {
     pub full_weights: Vec<f64>,
     #[serde(skip)]
     continuation: buried::Continuation,
+    /// Patches that were split since hanging vertices were last found.
+    #[serde(skip)]
+    touched: Vec<bool>,
     #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,

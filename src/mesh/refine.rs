@@ -28,6 +28,7 @@ impl Mesh {
     pub fn split(&mut self, element: u32) -> u32 {
         let parent = self.elements[element as usize];
         debug_assert!(parent.is_leaf());
+        self.touched[parent.patch as usize] = true;
         let first = self.elements.len() as u32;
         let at = |mesh: &Self, v: u32| mesh.vertices[v as usize].lattice;
         let [a, b, c] = [0, 1, 2].map(|i| at(self, parent.corners[i]));
@@ -95,11 +96,13 @@ impl Mesh {
         vertex
     }
 
-    /// The leaves among `candidates` and all others that must be split so that neighbours differ by at most one level: those
-    /// with a vertex at a quarter of a side.
+    /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.
     pub fn unbalanced(&self) -> Vec<u32> {
         self.leaves()
-            .filter(|e| self.has_quarter_vertex(&self.elements[*e as usize]))
+            .filter(|e| {
+                let element = &self.elements[*e as usize];
+                self.touched[element.patch as usize] && self.has_quarter_vertex(element)
+            })
             .collect()
     }
 
@@ -118,11 +121,12 @@ impl Mesh {
         })
     }
 
-    /// Finds hanging vertices and integration weights; to be called after splits, before light is integrated.
-    pub fn finish_topology(&mut self) {
+    /// Finds hanging vertices, and takes in which of the vertices from `first` on are buried (those not spoken of are open);
+    /// to be called after splits, before light is interpolated.
+    pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
         for element in 0..self.elements.len() {
             let of = self.elements[element];
-            if of.is_leaf() {
+            if of.is_leaf() && self.touched[of.patch as usize] {
                 let mut hanging = [NONE; 4];
                 for (side, a, b) in of.sides() {
                     let middle = self.vertices[a as usize]
@@ -133,33 +137,35 @@ impl Mesh {
                 self.elements[element].hanging = hanging;
             }
         }
-        self.full_weights.clear();
-        self.full_weights.resize(self.vertices.len(), 0.0);
-        for element in 0..self.elements.len() as u32 {
-            if self.elements[element as usize].is_leaf() {
-                for triangle in self.fan(element) {
-                    let [a, b, c] = triangle.map(|v| self.position(v));
-                    let third = (b - a).cross(c - a).length() / 6.0;
-                    triangle
-                        .iter()
-                        .for_each(|v| self.full_weights[*v as usize] += third);
-                }
-            }
-        }
-        self.mark_buried(self.vertices.len() as u32, &[]);
-    }
-
-    /// Says which vertices from `first` on are buried; vertices not spoken of are open.
-    pub fn mark_buried(&mut self, first: u32, buried: &[bool]) {
+        self.touched.fill(false);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);
         self.buried.resize(self.vertices.len(), false);
+        self.plan_continuation();
+    }
+
+    /// Computes the weights with which values at vertices are integrated; to be called after [`Self::finish_topology`].
+    pub fn integrate(&mut self) {
+        self.full_weights.clear();
+        self.full_weights.resize(self.vertices.len(), 0.0);
+        let positions: Vec<DVec3> = (0..self.vertices.len() as u32)
+            .map(|v| self.position(v))
+            .collect();
+        for element in self.leaves().collect::<Vec<_>>() {
+            for triangle in self.fan(element) {
+                let [a, b, c] = triangle.map(|v| positions[v as usize]);
+                let third = (b - a).cross(c - a).length() / 6.0;
+                for vertex in triangle {
+                    self.full_weights[vertex as usize] += third;
+                }
+            }
+        }
+        let open = |(w, buried): (&f64, &bool)| if *buried { 0.0 } else { *w };
         self.weights = self
             .full_weights
             .iter()
             .zip(&self.buried)
-            .map(|(w, buried)| if *buried { 0.0 } else { *w })
+            .map(open)
             .collect();
-        self.plan_continuation();
     }
 }

@@ -61,8 +61,9 @@ impl Mesh {
             .collect();
         self.elements.iter_mut().for_each(|e| e.hanging = [NONE; 4]);
         let buried = std::mem::take(&mut self.buried);
-        self.finish_topology();
-        self.mark_buried(0, &buried);
+        self.touched = vec![true; patches];
+        self.finish_topology(0, &buried);
+        self.integrate();
         Ok(())
     }
 }

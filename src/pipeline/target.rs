@@ -15,8 +15,11 @@ const FEWEST_POINTS: usize = 256;
 /// The strictest options that are tried; see [`Options::at`].
 const STRICTEST: f64 = 2.5;
 
+/// The loosest.
+const LOOSEST: f64 = -0.5;
+
 /// The nRMS of a plain scene, about, at strictness 0 and how many times less it is at 1: where the first solve starts.
-const USUAL: (f64, f64) = (0.04, 6.0);
+const USUAL: (f64, f64) = (0.025, 5.0);
 
 /// Solves `scene` with thresholds that keep the estimated nRMS error of the irradiance below `target`: first with those that
 /// usually do, then with stricter ones in proportion to what was missed. `adjust` has the last word on the options of each
@@ -30,7 +33,7 @@ pub fn solve_to_error(
 ) -> Result<Solution, SolveError> {
     let started = Instant::now();
     let limit = settings.options.time_limit;
-    let mut strictness = ((USUAL.0 / target).ln() / USUAL.1.ln()).clamp(0.0, STRICTEST);
+    let mut strictness = ((USUAL.0 / target).ln() / USUAL.1.ln()).clamp(LOOSEST, STRICTEST);
     let mut best: Option<Solution> = None;
     let mut rounds = 0;
     loop {

@@ -122,9 +122,9 @@ impl Preset {
             epsilon_area: 1.0 / 1024.0,
             raw_form_factors: false,
             form_factor: FormFactorRule::Hybrid,
-            distance_factor: 10.0,
+            distance_factor: 5.0,
             shooting: Shooting::Interpolated,
-            tolerance: 0.001,
+            tolerance: 0.002,
             regather: true,
             audit_points: 256,
             max_shots: None,
@@ -145,7 +145,7 @@ impl Preset {
                 epsilon_fd: 0.008,
                 epsilon_fe: 0.04,
                 distance_factor: 5.0,
-                tolerance: 0.003,
+                tolerance: 0.006,
                 ..standard
             },
             Preset::Standard => standard,
@@ -163,7 +163,7 @@ impl Preset {
                 epsilon_fd: 0.0005,
                 epsilon_fe: 0.004,
                 distance_factor: 20.0,
-                tolerance: 0.0002,
+                tolerance: 0.0005,
                 ..standard
             },
         }
@@ -177,7 +177,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps.
+    /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps; less than 0 is looser than draft.
     pub fn at(strictness: f64) -> Self {
         let [low, high] = if strictness < 1.0 {
             [Preset::Draft, Preset::Standard]

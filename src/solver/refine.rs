@@ -218,11 +218,8 @@ impl Refinement<'_> {
             return fresh;
         }
         let first = first_vertex as u32;
-        self.mesh.finish_topology();
-        self.mesh.mark_buried(
-            first,
-            &buried(self.mesh, self.sampler.visibility, self.backing, first),
-        );
+        let buried = buried(self.mesh, self.sampler.visibility, self.backing, first);
+        self.mesh.finish_topology(first, &buried);
         let open: Vec<u32> = (first..self.mesh.vertices.len() as u32)
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();

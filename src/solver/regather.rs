@@ -1,7 +1,8 @@
 //! After the last shot: every patch's whole radiosity once more at every vertex of the finished mesh.
 //!
 //! A vertex that was made late has only interpolated what came before it, and what was left unshot has arrived nowhere. One
-//! iteration of E = K (M + ρ E) on the final mesh replaces both, and takes along every vertex in the same state.
+//! iteration of E = K (M + ρ E) on the final mesh replaces both, and takes along every vertex in the same state. What is unshot
+//! then goes through all its reflections as an ambient term, so that fewer shots are needed before.
 
 use super::audit::Span;
 use super::observer::{Control, Observer};
@@ -12,7 +13,11 @@ use crate::radiometry::{Power, Spectrum};
 impl Solver<'_> {
     /// Gathers; what was there stays if the observer stops it.
     pub(super) fn regather(&mut self, observer: &mut dyn Observer) -> Control {
-        let whole = self.whole();
+        let ambient = self.ambient();
+        let mut whole = self.whole();
+        for irradiance in &mut whole.unshot {
+            *irradiance *= ambient;
+        }
         let emitted = self.emitted().element_sum();
         let unshot: Power = (0..self.mesh.patches.len())
             .map(|patch| self.light.unshot_power(&self.mesh, patch))
@@ -50,16 +55,28 @@ impl Solver<'_> {
                 sums.push(((received + lost).element_sum() / sent, sent));
             }
         }
-        let before = std::mem::replace(&mut self.light.irradiance, irradiance);
-        for ((unshot, now), before) in
-            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(before)
+        self.light.irradiance = irradiance;
+        for ((unshot, now), gathered) in
+            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(whole.unshot)
         {
-            *unshot = *now - before;
+            *unshot = *now - gathered;
         }
         self.light.exitance_unshot.fill(false);
         self.escaped = escaped;
         self.sent_sum = Span::of(sums.into_iter());
         observer.progress(&self.progress(unshot));
         Control::Continue
+    }
+
+    /// By how much reflected light grows until what is unshot has gone through all its reflections, were these like those of the
+    /// light that has been shot: of a power M emitted, R is reflected so far and p of it unshot; then R∞ = R + p R∞ / M.
+    fn ambient(&self) -> Spectrum {
+        let unshot: Power = (0..self.mesh.patches.len())
+            .map(|patch| self.light.unshot_power(&self.mesh, patch))
+            .sum();
+        let emitted = self.emitted().max(Power::splat(f64::MIN_POSITIVE));
+        (Power::ONE - (unshot / emitted).min(Power::splat(0.5)))
+            .recip()
+            .as_vec3()
     }
 }

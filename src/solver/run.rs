@@ -79,7 +79,8 @@ impl<'a> Solver<'a> {
             };
             backing.extend(std::iter::repeat_n(side, corners.len() - 2));
         }
-        mesh.mark_buried(0, &buried(&mesh, visibility, &backing, 0));
+        mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
+        mesh.integrate();
         let light = Light::new(&mesh);
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
         let emitted: f64 = mesh
@@ -292,8 +293,9 @@ impl<'a> Solver<'a> {
             };
             candidates = refinement.pass(&candidates);
             self.rays += refinement.rays;
-            if observer.progress(&self.progress(self.unshot_powers().iter().sum())) == Control::Stop
-            {
+            self.mesh.integrate();
+            let unshot = self.unshot_powers().iter().sum();
+            if observer.progress(&self.progress(unshot)) == Control::Stop {
                 return Control::Stop;
             }
         }
