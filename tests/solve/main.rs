@@ -5,6 +5,7 @@ mod common;
 
 mod conforming;
 mod contact;
+mod corner;
 mod energy;
 mod estimate;
 mod exact_floor;
