@@ -1,7 +1,7 @@
 //! The error that a solve states of itself, against the one that it has.
 
 use super::common::reference::{Deviation, table};
-use super::{bundled, furnace, solved};
+use super::{bundled, by_preset, furnace, solved};
 use radiosity::scene::Scene;
 use radiosity::solution::Prober;
 use radiosity::solver::{Audit, Options, Preset, Silent};
@@ -17,7 +17,7 @@ fn the_estimate_is_within_a_factor_of_two_of_the_true_error() {
     for name in ["cornell-box", "shadow", "secondary", "geometry", "huge"] {
         let samples = table(&format!("{}_irradiance.csv", name.trim_end_matches("-box")));
         for preset in [Preset::Draft, Preset::Standard] {
-            let solution = solved(&bundled(name), preset.options());
+            let solution = by_preset(name, preset);
             let estimate = solution.report.audit.expect("there is light").n_rms;
             let error = Deviation::of(&solution, &samples).n_rms;
             assert!(
@@ -37,7 +37,7 @@ fn elements_that_are_said_to_be_off_are() {
         ("shadow", "shadow_irradiance.csv"),
         ("geometry", "geometry_irradiance.csv"),
     ] {
-        let solution = solved(&bundled(name), Preset::Standard.options());
+        let solution = by_preset(name, Preset::Standard);
         let prober = Prober::new(&solution);
         let mut squares: Vec<(f64, f64)> = table(file)
             .iter()

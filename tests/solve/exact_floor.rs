@@ -5,21 +5,21 @@
 
 use super::common::closed_form::emission_floor;
 use super::common::reference::Deviation;
-use super::{bundled, solved};
+use super::{bundled, by_preset, solved};
 use glam::DVec3;
 use radiosity::mesh::MeshLimits;
 use radiosity::solution::Prober;
 use radiosity::solver::{FormFactorRule, Options, Preset};
 
-fn floor_of(options: Options) -> Deviation {
-    let deviation = Deviation::of(&solved(&bundled("emission"), options), &emission_floor());
+fn floor_by(preset: Preset) -> Deviation {
+    let deviation = Deviation::of(&by_preset("emission", preset), &emission_floor());
     assert_eq!(deviation.missed, 0);
     deviation
 }
 
 #[test]
 fn a_standard_solve_has_the_exact_floor() {
-    let deviation = floor_of(Preset::Standard.options());
+    let deviation = floor_by(Preset::Standard);
     assert!(deviation.max_rel <= 0.015, "{deviation:?}");
     assert!(deviation.rms_rel <= 0.003, "{deviation:?}");
     assert!(deviation.bias.abs() <= 0.001, "{deviation:?}");
@@ -27,7 +27,7 @@ fn a_standard_solve_has_the_exact_floor() {
 
 #[test]
 fn an_accurate_solve_has_it_to_a_third_of_a_percent() {
-    let deviation = floor_of(Preset::Accurate.options());
+    let deviation = floor_by(Preset::Accurate);
     assert!(deviation.max_rel <= 0.003, "{deviation:?}");
     assert!(deviation.rms_rel <= 0.001, "{deviation:?}");
     assert!(deviation.bias.abs() <= 0.001, "{deviation:?}");
@@ -61,7 +61,7 @@ fn uniform_refinement_converges_with_the_square_of_the_size() {
 /// Each of the hundred brings a two-hundredth of the power; what they do to the mesh must add up.
 #[test]
 fn a_hundred_small_lights_light_the_floor_as_one_large_one() {
-    let solution = solved(&bundled("emission"), Preset::Standard.options());
+    let solution = by_preset("emission", Preset::Standard);
     let prober = Prober::new(&solution);
     let samples = emission_floor();
     let mean = samples.iter().map(|s| s.irradiance.x).sum::<f64>() / samples.len() as f64;

@@ -23,6 +23,8 @@ use radiosity::solution::Solution;
 use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// The engines that are there: obvhs always, Embree if it was built in.
 fn engines() -> Vec<EngineChoice> {
@@ -36,6 +38,22 @@ fn engines() -> Vec<EngineChoice> {
 /// A scene of the project.
 fn bundled(name: &str) -> Scene {
     Scene::load(&scene_folder(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A scene of the project solved by a preset, once for all tests.
+fn by_preset(name: &'static str, preset: Preset) -> Arc<Solution> {
+    type Place = Arc<OnceLock<Arc<Solution>>>;
+    static SOLVED: Mutex<BTreeMap<(&str, String), Place>> = Mutex::new(BTreeMap::new());
+    let key = (name, format!("{preset:?}"));
+    let place = Place::clone(
+        SOLVED
+            .lock()
+            .expect("no test panics in here")
+            .entry(key)
+            .or_default(),
+    );
+    let solution = place.get_or_init(|| Arc::new(solved(&bundled(name), preset.options())));
+    Arc::clone(solution)
 }
 
 /// Solves with the given options, on the engine and threads that the machine gives.

@@ -2,12 +2,12 @@
 //! `tests/data`: Cornell box, Shadow and Secondary by a program that shares nothing with this one, Geometry and Huge by
 //! `examples/path_trace.rs`, which shares with the solver the reader of scenes and the engine that traces rays.
 
+use super::by_preset;
 use super::common::reference::{Deviation, table};
-use super::{bundled, solved};
 use radiosity::solver::Preset::{self, Draft, Standard};
 
-fn deviation(scene: &str, preset: Preset) -> Deviation {
-    let solution = solved(&bundled(scene), preset.options());
+fn deviation(scene: &'static str, preset: Preset) -> Deviation {
+    let solution = by_preset(scene, preset);
     let name = scene.trim_end_matches("-box");
     let deviation = Deviation::of(&solution, &table(&format!("{name}_irradiance.csv")));
     assert_eq!(deviation.missed, 0);
@@ -15,7 +15,7 @@ fn deviation(scene: &str, preset: Preset) -> Deviation {
 }
 
 /// Of the Global Illumination Test Scenes; relative errors are not bounded where shadows are sharper than the elements.
-fn assert_test_scene(scene: &str) {
+fn assert_test_scene(scene: &'static str) {
     for (preset, n_rms, bias) in [(Draft, 0.10, 0.03), (Standard, 0.04, 0.01)] {
         let found = deviation(scene, preset);
         assert!(found.n_rms <= n_rms, "{preset:?}: {found:?}");
