@@ -97,8 +97,9 @@ fn draw_panel(
         .light_line_style(TRANSPARENT)
         .x_desc(cost)
         .y_desc("nRMS %")
-        .x_label_formatter(&|x| format!("{x}"))
-        .y_label_formatter(&|y| format!("{y}"))
+        .max_light_lines(1)
+        .x_label_formatter(&|x| label(*x))
+        .y_label_formatter(&|y| label(*y))
         .draw()?;
     for (curve, colour) in panel.curves.iter().zip(COLOURS) {
         let style = colour.stroke_width(2);
@@ -122,4 +123,16 @@ fn draw_panel(
             .draw()?;
     }
     Ok(())
+}
+
+/// 1, 2 and 5 of each decade have a label.
+fn label(value: f64) -> String {
+    let decade = 10f64.powf((value.log10() + 1e-9).floor());
+    let digit = (value / decade).round();
+    if [1.0, 2.0, 5.0].contains(&digit) {
+        let decimals = (-decade.log10()).max(0.0) as usize;
+        format!("{:.decimals$}", digit * decade)
+    } else {
+        String::new()
+    }
 }
