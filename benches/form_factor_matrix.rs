@@ -19,7 +19,7 @@ const AREAS: [f64; 3] = [0.0165, 0.00252, 0.00058];
 /// Largest areas for growth.
 const FINER: [f64; 2] = [0.00021, 0.000105];
 
-const TOLERANCES: [f64; 2] = [1e-3, 1e-4];
+const TOLERANCES: [f64; 3] = [1e-3, 3e-4, 1e-4];
 
 fn main() {
     let scene = closed_cornell_box();

@@ -4,6 +4,7 @@ use super::certificate::{Certificate, Tally};
 use super::pair::{Exchange, Kind, Worker};
 use super::rows::{Row, Rows, frame_of, in_frame};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
+use super::unhindered::Ranges;
 use super::{MatrixError, Options};
 use crate::scene::NamedScene;
 use crate::visibility::{EngineInfo, build};
@@ -107,7 +108,8 @@ impl Enclosure {
             std::iter::repeat_n(budget, facets.len())
         });
         let budgets = budgets.collect();
-        let space = Space::new(facets, occluders, extent, budgets, visibility);
+        let ranges = Ranges::new(options.tolerance);
+        let space = Space::new(facets, occluders, extent, budgets, ranges, visibility);
         let keep = rows.list.len() <= MOST_KEPT;
         Ok(Self {
             rows,
@@ -246,7 +248,7 @@ impl Enclosure {
             .for_each(|value| *value /= area.max(f64::MIN_POSITIVE));
         let sum = values.iter().sum();
         let quadrature: f64 =
-            values.iter().map(|v| v * v).sum::<f64>() * super::unhindered::ACCURACY.powi(2);
+            values.iter().map(|v| v * v).sum::<f64>() * self.space.ranges.accuracy.powi(2);
         let error = (squares / (area * area) + quadrature).sqrt();
         certificate.add(row, sum, error, limited);
         sink(&FormFactors {

@@ -11,6 +11,7 @@
 use super::convex::Convex;
 use super::facet::Facet;
 use super::look::{Eyes, Sums, View};
+use super::occluder::Between;
 use super::pair::Kind;
 use super::rays::Sampler;
 use super::space::Space;
@@ -37,6 +38,12 @@ const GAIN: f64 = 1.0 / 3.0;
 
 /// What of a tolerance each quarter may use: a kink runs through twice as many cells on each level, with errors of either sign.
 const SHARED: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Four and nine points of one side may agree by accident: this much of what they differ by from four points of the other is error too.
+const OTHER: f64 = 0.5;
+
+/// Where the less smooth side differs by more than this many tolerances, it is refined too, be its own error ever so large.
+const AGREES: f64 = 4.0;
 
 /// What came out.
 pub(super) struct Share {
@@ -69,7 +76,7 @@ pub(super) struct Looker<'a> {
     space: &'a Space,
     eyes: Eyes<'a>,
     /// What lies between, in the order in which it is cut out from either side.
-    orders: [Vec<u32>; 2],
+    orders: [Vec<Between>; 2],
     sampler: Sampler<'a>,
 }
 
@@ -88,7 +95,7 @@ impl<'a> Looker<'a> {
     pub fn share(
         &mut self,
         facets: [&Facet; 2],
-        between: &[u32],
+        between: &[Between],
         whole: f64,
         tolerance: f64,
         key: [u32; 2],
@@ -104,7 +111,7 @@ impl<'a> Looker<'a> {
     fn cut(
         &mut self,
         [a, b]: [&Facet; 2],
-        between: &[u32],
+        between: &[Between],
         whole: f64,
         tolerance: f64,
     ) -> Result<Share, TooIntricate> {
@@ -114,15 +121,17 @@ impl<'a> Looker<'a> {
             order.clear();
             order.extend_from_slice(between);
             let occluders = &self.space.occluders;
-            order.sort_by_key(|k| occluders[*k as usize].height(eye.centroid) <= 0.0);
+            order.sort_by_key(|it| occluders[it.occluder as usize].height(eye.centroid) <= 0.0);
         }
-        let view = |outer, inner, between| View {
+        let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
+        let view = |outer, inner, k: usize| View {
             outer,
             inner,
-            between,
+            between: &orders[k],
             whole,
+            is_far: self.space.ranges.is_afar(gap, inner),
         };
-        let share = self.integrate([view(a, b, &orders[0]), view(b, a, &orders[1])], tolerance);
+        let share = self.integrate([view(a, b, 0), view(b, a, 1)], tolerance);
         self.orders = orders;
         share
     }
@@ -143,15 +152,25 @@ impl<'a> Looker<'a> {
                 return Ok(Share::of((1.0, error), tolerance));
             }
         }
-        let guess = self.guess(view, coarse[0])?;
-        let other = self.guess(back, coarse[1])?;
-        let (smooth, rough, guess, other) = if guess.1 <= other.1 {
-            (view, back, guess, other)
+        let (smooth, rough, coarse) = if coarse[0].variance() <= coarse[1].variance() {
+            (view, back, coarse)
         } else {
-            (back, view, other, guess)
+            (back, view, [coarse[1], coarse[0]])
         };
-        let agrees = |found: (f64, f64)| (found.0 - other.0).abs() <= other.1.max(tolerance);
-        if guess.1 <= tolerance && agrees(guess) {
+        let guess = self.guess(smooth, coarse[0])?;
+        if guess.1.max((guess.0 - coarse[1].share()).abs()) <= tolerance {
+            return Ok(Share::of(guess, tolerance));
+        }
+        let other = self.guess(rough, coarse[1])?;
+        let (smooth, rough, guess, other, coarse) = if guess.1 <= other.1 {
+            (smooth, rough, guess, other, coarse[1])
+        } else {
+            (rough, smooth, other, guess, coarse[0])
+        };
+        let limit = other.1.clamp(tolerance, AGREES * tolerance);
+        let agrees = |found: (f64, f64)| (found.0 - other.0).abs() <= limit;
+        let differs = OTHER * (guess.0 - coarse.share()).abs();
+        if guess.1.max(differs) <= tolerance && agrees(guess) {
             return Ok(Share::of(guess, tolerance));
         }
         let found = self.refine_all(smooth, tolerance)?;
@@ -165,8 +184,9 @@ impl<'a> Looker<'a> {
         // One of them has missed something.
         let found = self.refine_all(smooth, FINER * tolerance)?;
         let other = self.refine_all(rough, FINER * tolerance)?;
-        let (mean, half) = (0.5 * (found.0 + other.0), 0.5 * (found.0 - other.0).abs());
-        Ok(Share::of((mean, half.max(found.1)), tolerance))
+        // The smoother one is right sooner.
+        let half = 0.5 * (found.0 - other.0).abs();
+        Ok(Share::of((found.0, half.max(found.1)), tolerance))
     }
 
     /// The share that one side sees from nine points a tile, and its error.
@@ -220,6 +240,7 @@ impl<'a> Looker<'a> {
             let off = Sums {
                 visible: unsteady * fine.share(),
                 all: unsteady,
+                ..Sums::default()
             };
             return Ok(Refined {
                 sums: fine,

@@ -3,8 +3,9 @@
 use super::convex::Convex;
 use super::facet::Facet;
 use super::gauss::each_node;
+use super::occluder::Between;
 use super::space::Space;
-use super::unhindered::seen;
+use super::unhindered::{seen, seen_afar};
 use super::visible::{Cutter, TooIntricate};
 use glam::DVec3;
 
@@ -16,9 +17,20 @@ const INWARDS: f64 = 1e-3;
 pub(super) struct Sums {
     pub visible: f64,
     pub all: f64,
+    /// Of the square of the visible share, weighted with all.
+    pub squares: f64,
 }
 
 impl Sums {
+    /// How unlike the points see: the variance of their shares.
+    pub fn variance(&self) -> f64 {
+        if self.all > 0.0 {
+            (self.squares / self.all - self.share().powi(2)).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
     pub fn sees_all(&self) -> bool {
         self.visible == self.all
     }
@@ -42,6 +54,7 @@ impl std::iter::Sum for Sums {
         iter.fold(Self::default(), |a, b| Self {
             visible: a.visible + b.visible,
             all: a.all + b.all,
+            squares: a.squares + b.squares,
         })
     }
 }
@@ -51,7 +64,9 @@ impl std::iter::Sum for Sums {
 pub(super) struct View<'a> {
     pub outer: &'a Facet,
     pub inner: &'a Facet,
-    pub between: &'a [u32],
+    pub between: &'a [Between],
+    /// Whether midpoints are enough for what is seen of the other ([`seen_afar`]).
+    pub is_far: bool,
     /// What they exchange with nothing between.
     pub whole: f64,
 }
@@ -99,14 +114,24 @@ impl<'a> Eyes<'a> {
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
         let (normal, extent) = (view.outer.normal, self.space.extent);
         let occluders = view.between.iter();
-        let occluders = occluders.map(|k| &self.space.occluders[*k as usize]);
+        let occluders =
+            occluders.map(|it| (&self.space.occluders[it.occluder as usize], it.planes));
+        let measure = |part: &[DVec3]| {
+            if view.is_far {
+                seen_afar(normal, eye, view.inner.normal, part)
+            } else {
+                seen(normal, eye, part)
+            }
+        };
         let visible = self
             .cutter
-            .seen(eye, normal, view.inner, occluders, extent)?;
-        let all = seen(normal, eye, view.inner.corners());
+            .seen(eye, view.inner, occluders, extent, measure)?;
+        let all = measure(view.inner.corners());
+        let visible = visible.unwrap_or(all);
         Ok(Sums {
-            visible: weight * visible.unwrap_or(all),
+            visible: weight * visible,
             all: weight * all,
+            squares: weight * visible * visible / all.max(f64::MIN_POSITIVE),
         })
     }
 
@@ -148,7 +173,8 @@ impl<'a> Eyes<'a> {
         let extent = self.space.extent;
         for (eye, _) in &self.places {
             let occluders = view.between.iter();
-            let occluders = occluders.map(|k| &self.space.occluders[*k as usize]);
+            let occluders =
+                occluders.map(|it| (&self.space.occluders[it.occluder as usize], it.planes));
             if !self.cutter.hides(*eye, view.inner, occluders, extent)? {
                 return Ok(false);
             }

@@ -18,6 +18,13 @@ pub(super) struct Occluder {
     edges: Vec<Edge>,
 }
 
+/// An occluder that may come between a pair, by its number, and the planes of its shadows that matter there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Between {
+    pub occluder: u32,
+    pub planes: Planes,
+}
+
 /// A directed line by its Plücker coordinates.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
@@ -41,10 +48,40 @@ pub(super) enum Side {
 pub(super) enum Effect {
     /// It meets none of them.
     None,
-    /// It may meet some.
-    Some,
+    /// It may meet some; these are the planes of its shadows that may run through them.
+    Some(Planes),
     /// It meets all of them.
     All,
+}
+
+/// Which planes of an occluder's shadows matter to a pair: bit 0 stands for its own, the others for those along its edges. Of a large
+/// surface between two small ones one edge or two are enough.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Planes(u32);
+
+impl Planes {
+    pub const ALL: Self = Self(u32::MAX);
+
+    /// Edges from the 31st on share a bit, which stays set.
+    fn bit(edge: usize) -> u32 {
+        1 << (edge + 1).min(31)
+    }
+
+    fn without_own(self) -> Self {
+        Self(self.0 & !1)
+    }
+
+    fn without(self, edge: usize) -> Self {
+        Self(self.0 & !(Self::bit(edge) & (u32::MAX >> 1)))
+    }
+
+    fn has_own(self) -> bool {
+        self.0 & 1 != 0
+    }
+
+    fn has(self, edge: usize) -> bool {
+        self.0 & Self::bit(edge) != 0
+    }
 }
 
 impl Occluder {
@@ -134,11 +171,12 @@ impl Occluder {
             (Side::Front, Side::Front) | (Side::Back, Side::Back) => return Effect::None,
             (Side::Front, _) | (_, Side::Back) => true,
             (Side::Back, _) | (_, Side::Front) => false,
-            (Side::Across, Side::Across) => return Effect::Some,
+            (Side::Across, Side::Across) => return Effect::Some(Planes::ALL),
         };
         let sign = if front_to_back { 1.0 } else { -1.0 };
         let mut all_inside = true;
-        for edge in &self.edges {
+        let mut planes = Planes::ALL;
+        for (k, edge) in self.edges.iter().enumerate() {
             // Lines that pass the edge nearer than 1e-8 of the scene touch it.
             let reach = 1e-8 * edge.length * extent * extent;
             let (least, most) = lines.volumes(edge, sign);
@@ -146,12 +184,17 @@ impl Occluder {
                 return Effect::None;
             }
             all_inside &= least >= 0.0;
+            if least >= 0.0 {
+                planes = planes.without(k);
+            }
         }
         let apart = from != Side::Across && to != Side::Across;
-        if all_inside && apart && self.is_between(lines) {
+        if !(apart && self.is_between(lines)) {
+            Effect::Some(planes)
+        } else if all_inside {
             Effect::All
         } else {
-            Effect::Some
+            Effect::Some(planes.without_own())
         }
     }
 
@@ -165,22 +208,26 @@ impl Occluder {
         clear(lines.from.corners()) && clear(lines.to.corners())
     }
 
-    /// The half-spaces whose common part is all that it hides from `eye`; none if it is seen edge-on.
-    pub fn shadow(&self, eye: DVec3, extent: f64, planes: &mut Vec<Plane>) {
+    /// The half-spaces, those of `wanted`, whose common part is all that it hides from `eye`; none if it is seen edge-on.
+    pub fn shadow(&self, eye: DVec3, wanted: Planes, extent: f64, planes: &mut Vec<Plane>) {
         planes.clear();
         let height = self.height(eye);
         if height.abs() <= self.thickness {
             return;
         }
         let sign = -height.signum();
-        let beyond = self.normal * sign;
-        planes.push(Plane {
-            normal: beyond,
-            offset: self.offset * sign + self.thickness,
-            reach: ROUNDING * extent,
-        });
-        for (edge, corner) in self.edges.iter().zip(&self.corners) {
-            let normal = edge.along.cross(eye - *corner) * sign;
+        if wanted.has_own() {
+            planes.push(Plane {
+                normal: self.normal * sign,
+                offset: self.offset * sign + self.thickness,
+                reach: ROUNDING * extent,
+            });
+        }
+        for (k, edge) in self.edges.iter().enumerate() {
+            if !wanted.has(k) {
+                continue;
+            }
+            let normal = (edge.along.cross(eye) + edge.moment) * sign;
             planes.push(Plane {
                 normal,
                 offset: normal.dot(eye),
@@ -284,19 +331,25 @@ mod tests {
             lines.set(&Convex::new(from), &Convex::new(to));
             lines
         };
+        // How many of the four edges matter.
+        let edges_of = |effect: Effect| match effect {
+            Effect::None => None,
+            Effect::All => Some(0),
+            Effect::Some(planes) => Some((0..4).filter(|k| planes.has(*k)).count()),
+        };
         let (lines, back) = (between(&below, &above), between(&above, &below));
-        for (size, x, effect) in [
-            (1.01, 0.0, Effect::All),
-            (0.5, 0.0, Effect::Some),
-            (1.0, 1.5, Effect::Some),
-            (1.0, 2.0, Effect::None),
-            (1.0, 2.5, Effect::None),
+        for (size, x, edges) in [
+            (1.01, 0.0, Some(0)),
+            (0.5, 0.0, Some(4)),
+            (1.0, 1.5, Some(1)),
+            (1.0, 2.0, None),
+            (1.0, 2.5, None),
         ] {
             let mut corners = square(1.0, size, x);
             for _ in 0..2 {
                 let between = Occluder::new(corners.clone(), 1e-6).expect("has an area");
-                assert_eq!(between.effect(&lines, 4.0), effect, "{size} {x}");
-                assert_eq!(between.effect(&back, 4.0), effect, "{size} {x}");
+                assert_eq!(edges_of(between.effect(&lines, 4.0)), edges, "{size} {x}");
+                assert_eq!(edges_of(between.effect(&back, 4.0)), edges, "{size} {x}");
                 corners.reverse();
             }
         }
@@ -310,7 +363,7 @@ mod tests {
         for turned in [corners.clone(), corners.into_iter().rev().collect()] {
             let occluder = Occluder::new(turned, 1e-6).expect("has an area");
             let mut planes = Vec::new();
-            occluder.shadow(DVec3::ZERO, 4.0, &mut planes);
+            occluder.shadow(DVec3::ZERO, Planes::ALL, 4.0, &mut planes);
             let hidden = |p: DVec3| planes.iter().all(|plane| plane.height(p) > 0.0);
             assert!(hidden(DVec3::new(0.9, -0.9, 2.0)));
             assert!(!hidden(DVec3::new(1.1, 0.0, 2.0)));

@@ -2,9 +2,8 @@
 
 use super::facet::Facet;
 use super::hidden::{Looker, Share};
-use super::occluder::{Effect, Lines};
+use super::occluder::{Between, Effect, Lines};
 use super::space::Space;
-use super::unhindered;
 
 /// What a pair of facets exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,7 +35,7 @@ pub(super) enum Kind {
 pub(super) struct Worker<'a> {
     space: &'a Space,
     looker: Looker<'a>,
-    between: Vec<u32>,
+    between: Vec<Between>,
     lines: Lines,
     /// Rays traced so far.
     pub rays: u64,
@@ -69,8 +68,9 @@ impl<'a> Worker<'a> {
         }
         let nodes = [(&a_seen, i), (&b_seen, j)]
             .map(|(part, k)| part.is_whole().then(|| &self.space.nodes[k as usize]));
-        let whole = unhindered::exchange(&a_seen, &b_seen, nodes);
-        let accuracy = unhindered::ACCURACY * whole;
+        let ranges = &self.space.ranges;
+        let whole = ranges.exchange(&a_seen, &b_seen, nodes);
+        let accuracy = ranges.accuracy * whole;
         if self.between.is_empty() || whole == 0.0 {
             return Exchange {
                 amount: whole,
@@ -115,7 +115,10 @@ impl<'a> Worker<'a> {
             }
             match occluder.effect(&self.lines, self.space.extent) {
                 Effect::None => {}
-                Effect::Some => self.between.push(k),
+                Effect::Some(planes) => self.between.push(Between {
+                    occluder: k,
+                    planes,
+                }),
                 Effect::All => return false,
             }
         }

@@ -4,7 +4,7 @@ use super::facet::{Facet, Part};
 use super::join::joined;
 use super::occluder::Occluder;
 use super::tree::Tree;
-use super::unhindered::Nodes;
+use super::unhindered::{Nodes, Ranges};
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
@@ -42,6 +42,8 @@ pub(super) struct Space {
     pub horizon: f64,
     /// How accurate the row of each facet must be.
     pub budgets: Vec<Budget>,
+    /// Which formula serves where nothing lies between.
+    pub ranges: Ranges,
     pub visibility: Box<dyn Visibility>,
 }
 
@@ -51,6 +53,7 @@ impl Space {
         occluders: Vec<Occluder>,
         extent: f64,
         budgets: Vec<Budget>,
+        ranges: Ranges,
         visibility: Box<dyn Visibility>,
     ) -> Self {
         Self {
@@ -61,6 +64,7 @@ impl Space {
             extent,
             horizon: HORIZON * extent,
             budgets,
+            ranges,
             visibility,
         }
     }

@@ -2,8 +2,7 @@
 
 use super::convex::Convex;
 use super::facet::Facet;
-use super::occluder::{Occluder, Plane};
-use super::unhindered::seen;
+use super::occluder::{Occluder, Plane, Planes};
 use glam::DVec3;
 
 /// More fragments than this are not worth cutting: rays do it faster.
@@ -13,7 +12,6 @@ const MOST_FRAGMENTS: usize = 128;
 #[derive(Default)]
 pub(super) struct Cutter {
     fragments: Vec<Convex>,
-    cut: Vec<Convex>,
     planes: Vec<Plane>,
 }
 
@@ -22,21 +20,20 @@ pub(super) struct Cutter {
 pub(super) struct TooIntricate;
 
 impl Cutter {
-    /// Eq. (2) from `eye`, with the unit normal of its side, to what it sees of `facet` past the occluders, all of it above
-    /// the horizon; `None` if that is all of it.
+    /// The sum of `measure` over what `eye` sees of `facet` past the occluders; `None` if that is all of it.
     pub fn seen<'a>(
         &mut self,
         eye: DVec3,
-        normal: DVec3,
         facet: &Facet,
-        occluders: impl Iterator<Item = &'a Occluder>,
+        occluders: impl Iterator<Item = (&'a Occluder, Planes)>,
         extent: f64,
+        measure: impl Fn(&[DVec3]) -> f64,
     ) -> Result<Option<f64>, TooIntricate> {
         if !self.cut_shadows(eye, facet, occluders, extent)? {
             return Ok(None);
         }
         let parts = self.fragments.iter();
-        let visible = parts.map(|part| seen(normal, eye, part.corners())).sum();
+        let visible = parts.map(|part| measure(part.corners())).sum();
         Ok(Some(visible))
     }
 
@@ -45,7 +42,7 @@ impl Cutter {
         &mut self,
         eye: DVec3,
         facet: &Facet,
-        occluders: impl Iterator<Item = &'a Occluder>,
+        occluders: impl Iterator<Item = (&'a Occluder, Planes)>,
         extent: f64,
     ) -> Result<bool, TooIntricate> {
         self.cut_shadows(eye, facet, occluders, extent)?;
@@ -57,14 +54,14 @@ impl Cutter {
         &mut self,
         eye: DVec3,
         facet: &Facet,
-        occluders: impl Iterator<Item = &'a Occluder>,
+        occluders: impl Iterator<Item = (&'a Occluder, Planes)>,
         extent: f64,
     ) -> Result<bool, TooIntricate> {
         self.fragments.clear();
         self.fragments.push(facet.shape);
         let mut is_less = false;
-        for occluder in occluders {
-            occluder.shadow(eye, extent, &mut self.planes);
+        for (occluder, wanted) in occluders {
+            occluder.shadow(eye, wanted, extent, &mut self.planes);
             if self.planes.is_empty() {
                 continue;
             }
@@ -78,27 +75,20 @@ impl Cutter {
 
     /// Takes the common part of all half-spaces off all fragments; false if there is none.
     fn subtract(&mut self) -> Result<bool, TooIntricate> {
-        if self
-            .fragments
-            .iter()
-            .all(|fragment| misses(fragment, &self.planes))
-        {
-            return Ok(false);
-        }
-        self.cut.clear();
         let mut is_less = false;
-        for fragment in &self.fragments {
-            let before = self.cut.len();
-            if misses(fragment, &self.planes)
-                || cut_out(fragment, &self.planes, &mut self.cut)? == Left::All
-            {
-                self.cut.truncate(before);
-                self.cut.push(*fragment);
+        // Backwards, since the last part of what is cut takes its place.
+        for k in (0..self.fragments.len()).rev() {
+            if misses(&self.fragments[k], &self.planes) {
+                continue;
+            }
+            let (fragment, before) = (self.fragments[k], self.fragments.len());
+            if cut_out(fragment, &self.planes, &mut self.fragments)? == Left::All {
+                self.fragments.truncate(before);
             } else {
+                self.fragments.swap_remove(k);
                 is_less = true;
             }
         }
-        std::mem::swap(&mut self.fragments, &mut self.cut);
         if self.fragments.len() > MOST_FRAGMENTS {
             Err(TooIntricate)
         } else {
@@ -127,11 +117,10 @@ enum Left {
 
 /// Appends the parts of a fragment outside of any half-space.
 fn cut_out(
-    fragment: &Convex,
+    mut rest: Convex,
     planes: &[Plane],
     parts: &mut Vec<Convex>,
 ) -> Result<Left, TooIntricate> {
-    let mut rest = *fragment;
     let mut heights = [0.0; Convex::MOST];
     for plane in planes {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -158,6 +147,7 @@ fn cut_out(
 
 #[cfg(test)]
 mod tests {
+    use super::super::unhindered::seen;
     use super::*;
 
     fn square(height: f64, size: f64, at: [f64; 2]) -> Vec<DVec3> {
@@ -172,8 +162,11 @@ mod tests {
             .iter()
             .filter_map(|c| Occluder::new(c.clone(), 1e-6))
             .collect();
+        let shadows = occluders.iter().map(|it| (it, Planes::ALL));
         Cutter::default()
-            .seen(DVec3::ZERO, DVec3::Z, &facet, occluders.iter(), 4.0)
+            .seen(DVec3::ZERO, &facet, shadows, 4.0, |part| {
+                seen(DVec3::Z, DVec3::ZERO, part)
+            })
             .expect("is simple")
             .unwrap_or_else(|| seen(DVec3::Z, DVec3::ZERO, facet.corners()))
     }

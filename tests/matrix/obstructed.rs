@@ -177,7 +177,7 @@ fn what_a_block_covers_of_a_floor_sees_nothing() {
     close(
         room.certificate.row_sums[2],
         1.0 - 0.4 * 0.35,
-        2e-4,
+        1e-4,
         "floor",
     );
     let room = matrix(&hanging_block());
