@@ -13,6 +13,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
+use clap::Parser;
 use common::reference::{self, Deviation, Known, Sample};
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent};
@@ -21,18 +22,26 @@ use radiosity::{Settings, solve};
 use std::error::Error;
 use std::path::PathBuf;
 
-/// What was asked for.
-#[derive(Default)]
+#[derive(Parser)]
 struct Request {
+    /// SCENE and POINTS.csv, or neither
     files: Vec<PathBuf>,
+    #[arg(long = "preset", value_parser = common::preset, default_values = ["draft", "standard"])]
     presets: Vec<Preset>,
+    #[arg(long, default_value = "auto")]
     engine: EngineChoice,
+    #[arg(long, default_value_t = 0)]
     threads: usize,
-    set: Vec<(String, serde_json::Value)>,
+    /// An option of the solve as in report.json, and its value in JSON
+    #[arg(long, value_name = "OPTION=VALUE", value_parser = setting)]
+    set: Vec<Setting>,
 }
 
+/// Name and value of an option.
+type Setting = (String, serde_json::Value);
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let request = request()?;
+    let request = Request::parse();
     println!(
         "| scene | preset, engine | elements | vertices | Mrays | seconds | nRMS % | rmsRel % | bias % | max % | estimated nRMS % |"
     );
@@ -87,37 +96,14 @@ fn tasks(request: &Request) -> Result<Vec<Known>, Box<dyn Error>> {
     }
 }
 
-fn request() -> Result<Request, Box<dyn Error>> {
-    let mut request = Request::default();
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        let mut value = || {
-            arguments
-                .next()
-                .ok_or_else(|| format!("{argument} needs a value"))
-        };
-        match argument.as_str() {
-            "--preset" => request.presets.push(preset(&value()?)?),
-            "--engine" => request.engine = value()?.parse()?,
-            "--threads" => request.threads = value()?.parse()?,
-            "--set" => request.set.push(setting(&value()?)?),
-            flag if flag.starts_with("--") => return Err(format!("unknown option {flag}").into()),
-            file => request.files.push(file.into()),
-        }
-    }
-    if request.presets.is_empty() {
-        request.presets = vec![Preset::Draft, Preset::Standard];
-    }
-    Ok(request)
-}
-
 /// NAME=VALUE, the value in JSON; parts of `limits` by their own names.
-fn setting(text: &str) -> Result<(String, serde_json::Value), Box<dyn Error>> {
-    let (name, value) = text.split_once('=').ok_or("--set needs OPTION=VALUE")?;
-    Ok((name.to_owned(), serde_json::from_str(value)?))
+fn setting(text: &str) -> Result<Setting, String> {
+    let (name, value) = text.split_once('=').ok_or("expected OPTION=VALUE")?;
+    let value = serde_json::from_str(value).map_err(|e| e.to_string())?;
+    Ok((name.to_owned(), value))
 }
 
-fn with(options: Options, set: &[(String, serde_json::Value)]) -> Result<Options, Box<dyn Error>> {
+fn with(options: Options, set: &[Setting]) -> Result<Options, Box<dyn Error>> {
     let mut json = serde_json::to_value(options)?;
     for (name, value) in set {
         let within = if json["limits"].get(name).is_some() {
@@ -130,15 +116,4 @@ fn with(options: Options, set: &[(String, serde_json::Value)]) -> Result<Options
             .ok_or_else(|| format!("no option {name}"))? = value.clone();
     }
     Ok(serde_json::from_value(json)?)
-}
-
-fn preset(name: &str) -> Result<Preset, String> {
-    match name {
-        "draft" => Ok(Preset::Draft),
-        "standard" => Ok(Preset::Standard),
-        "accurate" => Ok(Preset::Accurate),
-        _ => Err(format!(
-            "unknown preset {name}; there are draft, standard and accurate"
-        )),
-    }
 }

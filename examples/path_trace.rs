@@ -15,15 +15,16 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
+use clap::Parser;
 use common::reference::{self, Sample};
 use fastrand::Rng;
 use glam::{DVec3, Vec3};
-use radiosity::scene::{Corners, Scene, Sides};
+use radiosity::scene::{Scene, Sides};
 use radiosity::visibility::{EngineChoice, Fans, Hit, Ray, Triangles, Visibility, build};
 use rayon::prelude::*;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Rays start this far from their surface, over the scene's extent.
 const OFFSET: f64 = 1e-6;
@@ -35,25 +36,31 @@ const BATCH: usize = 1024;
 const STRATA: usize = 24;
 const ROUNDS: usize = 8;
 
+#[derive(Parser)]
+struct Request {
+    scene: PathBuf,
+    /// How many random points
+    #[arg(long, default_value_t = 300)]
+    points: usize,
+    /// A table with the points instead
+    #[arg(long)]
+    at: Option<PathBuf>,
+    /// Paths a point
+    #[arg(long, default_value_t = 1 << 16)]
+    paths: usize,
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut scene, mut table, mut points, mut paths, mut seed) = (None, None, 300, 1 << 16, 1);
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        let mut value = || {
-            arguments
-                .next()
-                .ok_or_else(|| format!("{argument} needs a value"))
-        };
-        match argument.as_str() {
-            "--points" => points = value()?.parse()?,
-            "--at" => table = Some(PathBuf::from(value()?)),
-            "--paths" => paths = value()?.parse()?,
-            "--seed" => seed = value()?.parse()?,
-            flag if flag.starts_with("--") => return Err(format!("unknown option {flag}").into()),
-            folder => scene = Some(folder.to_owned()),
-        }
-    }
-    let scene = Scene::load(Path::new(&scene.ok_or("expected a scene")?))?;
+    let Request {
+        scene,
+        points,
+        at: table,
+        paths,
+        seed,
+    } = Request::parse();
+    let scene = Scene::load(&scene)?;
     let tracer = Tracer::new(&scene)?;
     let places = match &table {
         Some(table) => reference::read(table)?,
@@ -122,11 +129,7 @@ impl Tracer {
         let mut facets = Vec::new();
         for (number, surface) in scene.surfaces.iter().enumerate() {
             let material = &scene.materials[surface.material as usize];
-            let triangles = match surface.corners {
-                Corners::Triangle(t) => vec![t],
-                Corners::Quad([a, b, c, d]) => vec![[a, b, c], [a, c, d]],
-            };
-            for triangle in triangles {
+            for triangle in surface.corners.triangles() {
                 let corners = triangle.map(|i| scene.vertices[i as usize]);
                 let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 facets.push(Facet {

@@ -10,7 +10,7 @@
 mod common;
 
 use radiosity::scene::Scene;
-use radiosity::solver::{Preset, Silent};
+use radiosity::solver::Silent;
 use radiosity::{Settings, solve};
 use std::error::Error;
 
@@ -25,12 +25,8 @@ const SCENES: [(&str, Option<[f64; 5]>); 6] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let preset = match std::env::args().nth(1).as_deref() {
-        Some("draft") => Preset::Draft,
-        None | Some("standard") => Preset::Standard,
-        Some("accurate") => Preset::Accurate,
-        Some(other) => return Err(format!("unknown preset {other}").into()),
-    };
+    let name = std::env::args().nth(1);
+    let preset = common::preset(name.as_deref().unwrap_or("standard"))?;
     println!(
         "| scene | | input patches | shots | quadtree depth | shots with meshing | elements | seconds | estimated nRMS |"
     );

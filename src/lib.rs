@@ -27,7 +27,7 @@
 //! * `unsafe` lives in the crate `embree4-sys` and in [`visibility`] only.
 //! * The same input, engine and instruction set give the same bits for any number of threads.
 //!
-//! `tests/tidy.rs` and `tests/solve.rs` hold them.
+//! `tests/tidy` and `tests/solve` hold them.
 #![deny(missing_docs)]
 
 pub mod cli;
@@ -42,6 +42,8 @@ pub mod render;
 pub mod scene;
 pub mod solution;
 pub mod solver;
+mod threads;
 pub mod visibility;
 
 pub use pipeline::{Settings, SolveError, solve, solve_to_error};
+pub use threads::ThreadsError;

@@ -39,6 +39,12 @@ impl Convex {
         &self.corners[..self.len]
     }
 
+    /// The corners of a quad, or of a triangle with its last twice.
+    pub fn quad(&self) -> [DVec3; 4] {
+        let c = self.corners();
+        [c[0], c[1], c[2], *c.get(3).unwrap_or(&c[2])]
+    }
+
     /// Fewer than three corners: nothing is left.
     pub fn is_empty(&self) -> bool {
         self.len < 3

@@ -2,14 +2,15 @@
 
 use super::certificate::{Certificate, Tally};
 use super::pair::{Exchange, Kind, Worker};
-use super::rows::{Row, Rows, frame_of, in_frame};
+use super::rows::{Row, Rows};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
 use super::unhindered::Ranges;
 use super::{MatrixError, Options};
 use crate::scene::NamedScene;
+use crate::threads::pool;
 use crate::visibility::{EngineInfo, build};
+use rayon::ThreadPool;
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ops::Range;
 
 /// Up to this many rows the exchanges of all pairs are kept (1 GiB) and each is worked out once; beyond it twice, so that memory
@@ -70,16 +71,10 @@ impl Enclosure {
     /// When no surface radiates, an option cannot be met, or the visibility engine cannot be built.
     pub fn new(named: &NamedScene, options: &Options) -> Result<Self, MatrixError> {
         options.check()?;
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(options.threads)
-            .build();
-        let pool = pool.map_err(|e| MatrixError::Threads {
-            threads: options.threads,
-            reason: e.to_string(),
-        })?;
+        let pool = pool(options.threads)?;
         let scene = &named.scene;
-        let frame = frame_of(scene);
-        let positions = in_frame(scene, &frame);
+        let frame = scene.frame();
+        let positions = scene.positions_in(&frame);
         let visibility = build(
             options.engine,
             &triangles(scene, &positions),

@@ -1,6 +1,7 @@
 //! Why there is no matrix.
 
 use super::Options;
+use crate::threads::ThreadsError;
 use crate::visibility::VisibilityError;
 use thiserror::Error;
 
@@ -11,13 +12,8 @@ pub enum MatrixError {
     #[error(transparent)]
     Visibility(#[from] VisibilityError),
     /// The threads could not be started.
-    #[error("cannot start {threads} threads: {reason}")]
-    Threads {
-        /// How many were asked for.
-        threads: usize,
-        /// The system's reason.
-        reason: String,
-    },
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
     /// There is no surface.
     #[error("no surface radiates: there is nothing to compute form factors of")]
     NothingRadiates,

@@ -38,11 +38,7 @@ impl Facet {
             .map(|c| c.distance_squared(centroid))
             .fold(0.0, f64::max)
             .sqrt();
-        let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners
-            .iter()
-            .copied()
-            .fold(DVec3::NEG_INFINITY, DVec3::max);
+        let (low, high) = polygon::bounds(corners);
         Some(Self {
             shape,
             normal,

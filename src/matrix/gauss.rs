@@ -48,8 +48,7 @@ fn legendre(count: usize) -> Rule {
 /// Calls `node` with each point and weight of the product rule with `points`² points on a triangle or convex quad; the weights
 /// sum up to its area. A triangle is a quad with two corners in one.
 pub(super) fn each_node(tile: &Convex, points: usize, mut node: impl FnMut(DVec3, f64)) {
-    let c = tile.corners();
-    let [a, b, c, d] = [c[0], c[1], c[2], *c.get(3).unwrap_or(&c[2])];
+    let [a, b, c, d] = tile.quad();
     for (v, wv) in rule(points) {
         let (left, right) = (a.lerp(d, *v), b.lerp(c, *v));
         let along_u = right - left;

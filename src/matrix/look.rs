@@ -3,7 +3,7 @@
 use super::convex::Convex;
 use super::facet::Facet;
 use super::gauss::each_node;
-use super::occluder::Between;
+use super::occluder::{Between, Occluder, Planes};
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
 use super::visible::{Cutter, TooIntricate};
@@ -71,6 +71,14 @@ pub(super) struct View<'a> {
     pub whole: f64,
 }
 
+impl<'a> View<'a> {
+    /// What lies between, with the planes of its shadows that matter.
+    fn occluders(&self, space: &'a Space) -> impl Iterator<Item = (&'a Occluder, Planes)> + 'a {
+        let between = self.between.iter();
+        between.map(|it| (&space.occluders[it.occluder as usize], it.planes))
+    }
+}
+
 /// Looks from points; one a thread.
 pub(super) struct Eyes<'a> {
     space: &'a Space,
@@ -113,9 +121,7 @@ impl<'a> Eyes<'a> {
 
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
         let (normal, extent) = (view.outer.normal, self.space.extent);
-        let occluders = view.between.iter();
-        let occluders =
-            occluders.map(|it| (&self.space.occluders[it.occluder as usize], it.planes));
+        let occluders = view.occluders(self.space);
         let measure = |part: &[DVec3]| {
             if view.is_far {
                 seen_afar(normal, eye, view.inner.normal, part)
@@ -172,9 +178,7 @@ impl<'a> Eyes<'a> {
     fn all_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
         let extent = self.space.extent;
         for (eye, _) in &self.places {
-            let occluders = view.between.iter();
-            let occluders =
-                occluders.map(|it| (&self.space.occluders[it.occluder as usize], it.planes));
+            let occluders = view.occluders(self.space);
             if !self.cutter.hides(*eye, view.inner, occluders, extent)? {
                 return Ok(false);
             }

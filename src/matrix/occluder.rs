@@ -97,6 +97,7 @@ impl Occluder {
             .iter()
             .map(|c| (normal.dot(*c) - offset).abs())
             .fold(0.0, f64::max);
+        let (low, high) = polygon::bounds(&corners);
         let edges = (0..corners.len()).map(|i| {
             let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
             Edge {
@@ -109,11 +110,8 @@ impl Occluder {
             normal,
             offset,
             thickness: warp + reach,
-            low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-            high: corners
-                .iter()
-                .copied()
-                .fold(DVec3::NEG_INFINITY, DVec3::max),
+            low,
+            high,
             edges: edges.collect(),
             corners,
         })

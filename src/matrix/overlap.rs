@@ -1,7 +1,7 @@
 //! Surfaces that lie over one another in one plane and face the same way: light would arrive twice.
 
 use super::convex::Convex;
-use crate::geometry::polygon::vector_area;
+use crate::geometry::polygon::{bounds, vector_area};
 use crate::scene::NamedScene;
 use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -25,17 +25,14 @@ pub(super) fn overlaps(named: &NamedScene, positions: &[DVec3], extent: f64) -> 
             .collect()
     };
     let boxes = (0..surfaces.len()).map(|k| {
-        let list = corners(k);
-        let low = list.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = list.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let (low, high) = bounds(&corners(k));
         GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), k)
     });
     let tree = RTree::bulk_load(boxes.collect());
     let mut pairs = Vec::new();
     for k in 0..surfaces.len() {
         let list = corners(k);
-        let low = list.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = list.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let (low, high) = bounds(&list);
         let near = tree
             .locate_in_envelope_intersecting(AABB::from_corners(low.to_array(), high.to_array()));
         let mut others: Vec<usize> = near

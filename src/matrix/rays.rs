@@ -1,6 +1,5 @@
 //! The visible share of a pair with too much between to cut out: rays, in rounds, until they agree.
 
-use super::convex::Convex;
 use super::facet::Facet;
 use super::hidden::Share;
 use super::pair::Kind;
@@ -112,7 +111,7 @@ fn jitter_seed(i: u32, j: u32, round: u32) -> u32 {
 fn scatter(facet: &Facet, cells: u32, seed: u32, points: &mut Vec<(DVec3, f64)>) {
     points.clear();
     for tile in facet.shape.tiles() {
-        let [a, b, c, d] = quad(&tile);
+        let [a, b, c, d] = tile.quad();
         for cell in 0..cells * cells {
             let [s, t] = jitter(seed, points.len() as u32);
             let u = (f64::from(cell % cells) + s) / f64::from(cells);
@@ -123,11 +122,6 @@ fn scatter(facet: &Facet, cells: u32, seed: u32, points: &mut Vec<(DVec3, f64)>)
             points.push((left + along_u * u, area / f64::from(cells * cells)));
         }
     }
-}
-
-fn quad(tile: &Convex) -> [DVec3; 4] {
-    let c = tile.corners();
-    [c[0], c[1], c[2], *c.get(3).unwrap_or(&c[2])]
 }
 
 /// Mean and spread of the rounds.

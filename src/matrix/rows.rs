@@ -8,7 +8,6 @@ use crate::geometry::Frame;
 use crate::mesh::split_at_contacts;
 use crate::radiometry::{Power, exitance_from_radiance};
 use crate::scene::{NamedScene, Names, Scene, Sides, Surface};
-use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 
@@ -237,15 +236,4 @@ fn labels(drafts: &[Draft], scene: &Scene, names: &Names, options: &Options) -> 
         label
     };
     drafts.iter().map(label).collect()
-}
-
-/// All corners of the surfaces of a scene.
-pub(super) fn frame_of(scene: &Scene) -> Frame {
-    let corners = scene.surfaces.iter().flat_map(|s| s.corners.indices());
-    Frame::of(corners.map(|v| scene.vertices[*v as usize]))
-}
-
-/// The vertices of a scene in a frame.
-pub(super) fn in_frame(scene: &Scene, frame: &Frame) -> Vec<DVec3> {
-    scene.vertices.iter().map(|v| frame.enter(*v)).collect()
 }

@@ -153,17 +153,9 @@ pub(super) fn occluders(scene: &Scene, positions: &[DVec3], extent: f64) -> Vec<
 
 /// The same as triangles, for rays.
 pub(super) fn triangles(scene: &Scene, positions: &[DVec3]) -> Triangles {
-    let fan = |corners: &[u32]| -> Vec<[u32; 3]> {
-        (1..corners.len() - 1)
-            .map(|i| [corners[0], corners[i], corners[i + 1]])
-            .collect()
-    };
+    let surfaces = scene.surfaces.iter();
     Triangles {
         vertices: positions.iter().map(|p| p.as_vec3()).collect(),
-        indices: scene
-            .surfaces
-            .iter()
-            .flat_map(|s| fan(s.corners.indices()))
-            .collect(),
+        indices: surfaces.flat_map(|s| s.corners.triangles()).collect(),
     }
 }

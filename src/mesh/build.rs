@@ -1,6 +1,6 @@
 //! From a scene to its coarsest mesh.
 
-use super::{Element, Frame, Lattice, Mesh, NONE, Patch, UNIT, contact};
+use super::{Element, Lattice, Mesh, NONE, Patch, UNIT, contact};
 use crate::radiometry::exitance_from_radiance;
 use crate::scene::{Scene, Sides};
 use rustc_hash::FxHashMap;
@@ -21,13 +21,7 @@ impl Mesh {
     /// of each piece, a grid of nearly square elements on each quad patch, one element on each triangle, split until
     /// `limits.initial_size` holds.
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
-        let frame = Frame::of(
-            scene
-                .surfaces
-                .iter()
-                .flat_map(|s| s.corners.indices())
-                .map(|v| scene.vertices[*v as usize]),
-        );
+        let frame = scene.frame();
         let pieces = contact::pieces(scene, &frame);
         let mut mesh = Self {
             frame,

@@ -1,6 +1,7 @@
 //! The interpolant: linear on the triangles around the centre of each element.
 
 use super::{Lattice, Mesh, NONE, UNIT};
+use crate::radiometry::Spectrum;
 use glam::DVec3;
 
 /// A corner of a fan triangle with its barycentric weight.
@@ -114,6 +115,17 @@ impl Mesh {
             }
         }
         best.0
+    }
+
+    /// What the interpolant of values at vertices is at a point of a leaf.
+    pub fn interpolated(
+        &self,
+        leaf: u32,
+        point: DVec3,
+        value: impl Fn(u32) -> Spectrum,
+    ) -> Spectrum {
+        let weighted = self.interpolate(leaf, point);
+        weighted.iter().map(|(v, w)| value(*v) * *w).sum()
     }
 
     /// The leaf and weights at a lattice point of a patch.

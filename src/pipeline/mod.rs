@@ -9,6 +9,7 @@ use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::solution::{EngineReport, PowerReport, Report, Seconds, Solution};
 use crate::solver::{Observer, Options, Solver, occluders};
+use crate::threads::{ThreadsError, pool};
 use crate::visibility::{EngineChoice, VisibilityError, build};
 use std::time::Instant;
 use thiserror::Error;
@@ -31,13 +32,8 @@ pub enum SolveError {
     #[error(transparent)]
     Visibility(#[from] VisibilityError),
     /// The threads could not be started.
-    #[error("cannot start {threads} threads: {reason}")]
-    Threads {
-        /// How many were asked for.
-        threads: usize,
-        /// The system's reason.
-        reason: String,
-    },
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
 }
 
 /// Solves `scene`; `observer` hears of the progress and may stop it. The same settings on the same instruction set give the same
@@ -48,13 +44,7 @@ pub fn solve(
     observer: &mut dyn Observer,
 ) -> Result<Solution, SolveError> {
     let started = Instant::now();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads)
-        .build()
-        .map_err(|e| SolveError::Threads {
-            threads: settings.threads,
-            reason: e.to_string(),
-        })?;
+    let pool = pool(settings.threads)?;
     let threads = pool.current_num_threads();
     let mesh = pool.install(|| Mesh::new(scene, settings.options.limits));
     let visibility = build(settings.engine, &occluders(scene, &mesh), threads)?;

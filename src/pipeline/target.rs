@@ -46,13 +46,13 @@ pub fn solve_to_error(
             ..settings.clone()
         };
         let mut solution = solve(scene, &settings, observer)?;
+        let stopped = solution.report.stop_reason != StopReason::Converged;
         let estimate = solution.report.audit.map_or(0.0, |audit| audit.n_rms);
         solution.report.target = Some(TargetReport {
             n_rms: target,
-            reached: estimate <= target && solution.report.stop_reason == StopReason::Converged,
+            reached: estimate <= target && !stopped,
             rounds,
         });
-        let stopped = solution.report.stop_reason != StopReason::Converged;
         if let Some(previous) = best.take().filter(|_| stopped) {
             return Ok(stopped_after(previous, solution));
         }

@@ -67,6 +67,7 @@ pub use error::SceneError;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};
 
+use crate::geometry::Frame;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
@@ -120,6 +121,25 @@ impl Corners {
             Corners::Triangle(t) => t,
             Corners::Quad(q) => q,
         }
+    }
+
+    /// As triangles with the same front: one, or the two that the diagonal from the first corner leaves.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let corners = self.indices();
+        (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]])
+    }
+}
+
+impl Scene {
+    /// The frame around all surfaces.
+    pub fn frame(&self) -> Frame {
+        let corners = self.surfaces.iter().flat_map(|s| s.corners.indices());
+        Frame::of(corners.map(|v| self.vertices[*v as usize]))
+    }
+
+    /// All vertices in a frame.
+    pub fn positions_in(&self, frame: &Frame) -> Vec<DVec3> {
+        self.vertices.iter().map(|v| frame.enter(*v)).collect()
     }
 }
 

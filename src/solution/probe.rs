@@ -38,9 +38,7 @@ impl<'a> Prober<'a> {
             .iter()
             .zip(0..)
             .map(|(patch, number)| {
-                let corners = patch.corners().iter();
-                let low = corners.clone().fold(DVec3::INFINITY, |low, c| low.min(*c));
-                let high = corners.fold(DVec3::NEG_INFINITY, |high, c| high.max(*c));
+                let (low, high) = polygon::bounds(patch.corners());
                 GeomWithData::new(
                     Rectangle::from_corners(low.to_array(), high.to_array()),
                     number,

@@ -6,11 +6,10 @@
 //! letting the mean error go through all reflections.
 
 use super::error::{ErrorModel, Squares};
-use super::feelers::interpolated;
 use super::run::Solver;
 use super::shoot::evaluate;
 use super::source::source_of;
-use crate::form_factor::{Receiver, Sampler, Source};
+use crate::form_factor::{Receiver, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
@@ -41,7 +40,7 @@ pub struct Audit {
 }
 
 /// Least, mean and largest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Span {
     /// The least.
     pub least: f64,
@@ -83,7 +82,10 @@ impl Solver<'_> {
         let plain = self.sampler();
         let known: Vec<Spectrum> = places
             .iter()
-            .map(|p| interpolated(&self.mesh, &self.light.irradiance, p.leaf, p.point))
+            .map(|p| {
+                let irradiance = |v: u32| self.light.irradiance[v as usize];
+                self.mesh.interpolated(p.leaf, p.point, irradiance)
+            })
             .collect();
         let receivers: Vec<(Receiver, u32)> = (0u32..)
             .zip(places.iter().zip(&known))
@@ -92,19 +94,25 @@ impl Solver<'_> {
         let levels = self.options.source_levels();
         let ones = vec![Spectrum::ONE; 1 << (2 * levels)];
         let mut gathered = vec![Power::ZERO; places.len()];
+        let mut leaving = Power::ZERO;
         let mut factors = vec![0.0; places.len()];
         for patch in 0..self.mesh.patches.len() {
             let of = &self.mesh.patches[patch];
             let unit = Source::new(of.corners(), of.normal, levels, &ones);
-            let add = |sampler: &Sampler, source: &Source, to: &mut dyn FnMut(usize, Spectrum)| {
-                for (number, gather) in (0..).zip(evaluate(sampler, source, &receivers).0) {
-                    to(number, gather.irradiance);
-                }
-            };
-            add(&plain, &unit, &mut |i, e| factors[i] += f64::from(e.x));
-            if whole.unshot_power(&self.mesh, patch) != Power::ZERO {
+            for (factor, gather) in factors
+                .iter_mut()
+                .zip(evaluate(&plain, &unit, &receivers).0)
+            {
+                *factor += f64::from(gather.irradiance.x);
+            }
+            let power = whole.unshot_power(&self.mesh, patch);
+            leaving += power;
+            if power != Power::ZERO {
                 let source = source_of(&self.mesh, &whole, patch, &self.options, &fine.thresholds);
-                add(&fine, &source, &mut |i, e| gathered[i] += e.as_dvec3());
+                let arrived = evaluate(&fine, &source, &receivers).0;
+                for (sum, gather) in gathered.iter_mut().zip(arrived) {
+                    *sum += gather.irradiance.as_dvec3();
+                }
             }
         }
         let count = 3.0 * places.len() as f64;
@@ -112,7 +120,9 @@ impl Solver<'_> {
         let errors = || known.iter().zip(&gathered).map(|(k, g)| k.as_dvec3() - *g);
         let square = errors().map(|e| e.length_squared()).sum::<f64>() / count;
         let off = errors().sum::<Power>().element_sum() / count;
-        let bias = off * self.amplification();
+        // What all reflections make of a unit of light.
+        let amplification = leaving.element_sum() / self.emitted().element_sum();
+        let bias = off * amplification.max(1.0);
         let spread = (square - off * off).max(0.0);
         let found = places.iter().zip(errors()).map(|(place, error)| {
             let squares = Squares::of(&self.mesh, &self.light, place.leaf);
@@ -125,22 +135,9 @@ impl Solver<'_> {
             n_rms: (spread + bias * bias).sqrt() / mean,
             bias: bias / mean,
             model,
-            received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or(Span {
-                least: 0.0,
-                mean: 0.0,
-                most: 0.0,
-            }),
+            received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or_default(),
             sent_sum: self.sent_sum,
         })
-    }
-
-    /// What all reflections make of a unit of light: power that leaves the patches over power emitted.
-    fn amplification(&self) -> f64 {
-        let whole = self.whole();
-        let leaving: Power = (0..self.mesh.patches.len())
-            .map(|patch| whole.unshot_power(&self.mesh, patch))
-            .sum();
-        (leaving.element_sum() / self.emitted().element_sum()).max(1.0)
     }
 }
 

@@ -52,7 +52,8 @@ pub(super) fn feelers(
         .zip(&feelers)
         .map(|(number, feeler)| {
             let leaf = mesh.leaf_at(feeler.patch, feeler.at.0, feeler.at.1);
-            let irradiance = interpolated(mesh, &light.irradiance, leaf, feeler.point);
+            let irradiance =
+                mesh.interpolated(leaf, feeler.point, |v| light.irradiance[v as usize]);
             let receiver = Receiver {
                 point: feeler.point,
                 normal: mesh.patches[feeler.patch as usize].normal,
@@ -66,12 +67,6 @@ pub(super) fn feelers(
         feeler.irradiance = gather.irradiance;
     }
     (feelers, rays)
-}
-
-/// The interpolant of values at vertices, at a point of a leaf.
-pub(super) fn interpolated(mesh: &Mesh, values: &[Spectrum], leaf: u32, point: DVec3) -> Spectrum {
-    let weighted = mesh.interpolate(leaf, point);
-    weighted.iter().map(|(v, w)| values[*v as usize] * *w).sum()
 }
 
 /// A ray on its way from the surface that it feels for.

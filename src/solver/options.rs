@@ -144,7 +144,6 @@ impl Preset {
                 meshing_power: 0.004,
                 epsilon_fd: 0.008,
                 epsilon_fe: 0.04,
-                distance_factor: 5.0,
                 tolerance: 0.006,
                 ..standard
             },
@@ -179,17 +178,12 @@ impl Default for Options {
 impl Options {
     /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps; less than 0 is looser than draft.
     pub fn at(strictness: f64) -> Self {
-        let [low, high] = if strictness < 1.0 {
-            [Preset::Draft, Preset::Standard]
+        let (low, high, way) = if strictness < 1.0 {
+            (Preset::Draft, Preset::Standard, strictness)
         } else {
-            [Preset::Standard, Preset::Accurate]
-        }
-        .map(Preset::options);
-        let way = if strictness < 1.0 {
-            strictness
-        } else {
-            strictness - 1.0
+            (Preset::Standard, Preset::Accurate, strictness - 1.0)
         };
+        let (low, high) = (low.options(), high.options());
         let between = |of: fn(&Options) -> f64| of(&low) * (of(&high) / of(&low)).powf(way);
         let depth = |of: &Options| f64::from(of.limits.max_depth);
         let nearer = if way < 0.5 { &low } else { &high };

@@ -138,11 +138,8 @@ impl Refinement<'_> {
     fn overlooked(&self) -> Vec<u32> {
         let leaf_of = |feeler: &Feeler| self.mesh.leaf_at(feeler.patch, feeler.at.0, feeler.at.1);
         let knows = |feeler: &Feeler, leaf: u32| {
-            let weighted = self.mesh.interpolate(leaf, feeler.point);
-            let interpolated: Spectrum = weighted
-                .iter()
-                .map(|(v, w)| self.arrived[*v as usize].irradiance * *w)
-                .sum();
+            let arrived = |v: u32| self.arrived[v as usize].irradiance;
+            let interpolated = self.mesh.interpolated(leaf, feeler.point, arrived);
             let difference = (feeler.irradiance - interpolated).abs();
             !self.exceeds(leaf, difference, self.options.epsilon_r)
         };

@@ -13,15 +13,13 @@ use crate::radiometry::{Power, Spectrum};
 impl Solver<'_> {
     /// Gathers; what was there stays if the observer stops it.
     pub(super) fn regather(&mut self, observer: &mut dyn Observer) -> Control {
-        let ambient = self.ambient();
+        let unshot = self.unshot();
+        let ambient = self.ambient(unshot);
         let mut whole = self.whole();
         for irradiance in &mut whole.unshot {
             *irradiance *= ambient;
         }
         let emitted = self.emitted().element_sum();
-        let unshot: Power = (0..self.mesh.patches.len())
-            .map(|patch| self.light.unshot_power(&self.mesh, patch))
-            .sum();
         let sampler = self.sampler();
         let mut irradiance = vec![Spectrum::ZERO; self.mesh.vertices.len()];
         let mut escaped = Power::ZERO;
@@ -68,12 +66,9 @@ impl Solver<'_> {
         Control::Continue
     }
 
-    /// By how much reflected light grows until what is unshot has gone through all its reflections, were these like those of the
+    /// By how much reflected light grows until what is `unshot` has gone through all its reflections, were these like those of the
     /// light that has been shot: of a power M emitted, R is reflected so far and p of it unshot; then R∞ = R + p R∞ / M.
-    fn ambient(&self) -> Spectrum {
-        let unshot: Power = (0..self.mesh.patches.len())
-            .map(|patch| self.light.unshot_power(&self.mesh, patch))
-            .sum();
+    fn ambient(&self, unshot: Power) -> Spectrum {
         let emitted = self.emitted().max(Power::splat(f64::MIN_POSITIVE));
         (Power::ONE - (unshot / emitted).min(Power::splat(0.5)))
             .recip()

@@ -16,7 +16,7 @@ use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceSca
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
-use crate::scene::{Corners, Scene};
+use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -42,21 +42,11 @@ pub struct Solver<'a> {
 
 /// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
 pub fn occluders(scene: &Scene, mesh: &Mesh) -> Triangles {
-    let vertices = scene
-        .vertices
-        .iter()
-        .map(|v| mesh.frame.enter(*v).as_vec3())
-        .collect();
-    let indices = scene
-        .surfaces
-        .iter()
-        .flat_map(|surface| match surface.corners {
-            Corners::Triangle(t) => vec![t],
-            Corners::Quad([a, b, c, d]) => vec![[a, b, c], [a, c, d]],
-        });
+    let positions = scene.positions_in(&mesh.frame);
+    let surfaces = scene.surfaces.iter();
     Triangles {
-        vertices,
-        indices: indices.collect(),
+        vertices: positions.iter().map(|p| p.as_vec3()).collect(),
+        indices: surfaces.flat_map(|s| s.corners.triangles()).collect(),
     }
 }
 
@@ -294,7 +284,7 @@ impl<'a> Solver<'a> {
             candidates = refinement.pass(&candidates);
             self.rays += refinement.rays;
             self.mesh.integrate();
-            let unshot = self.unshot_powers().iter().sum();
+            let unshot = self.unshot();
             if observer.progress(&self.progress(unshot)) == Control::Stop {
                 return Control::Stop;
             }
@@ -329,6 +319,11 @@ impl<'a> Solver<'a> {
             .into_par_iter()
             .map(|p| self.light.unshot_power(&self.mesh, p))
             .collect()
+    }
+
+    /// What all patches have unshot.
+    pub(super) fn unshot(&self) -> Power {
+        self.unshot_powers().iter().sum()
     }
 
     /// The light with nothing shot yet.

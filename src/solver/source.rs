@@ -118,10 +118,7 @@ fn cell_mean(mesh: &Mesh, light: &Light, patch: usize, cell: &Quad, finer: u32) 
             * 0.25;
     }
     let point = mesh.patches[patch].position_at(u, v);
-    mesh.interpolate(leaf, point)
-        .iter()
-        .map(|(v, w)| light.unshot_radiosity(mesh, *v) * *w)
-        .sum()
+    mesh.interpolated(leaf, point, |v| light.unshot_radiosity(mesh, v))
 }
 
 /// Mean of the cells, weighted by their areas.

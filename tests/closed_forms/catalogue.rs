@@ -3,8 +3,10 @@
 //! Formulas with a letter are numbered as in J. R. Howell's catalogue of radiation configuration factors. Every
 //! expected value was obtained twice: from the closed form and by an independent quadrature of cosθ cosθ' / (π r²).
 
+use crate::common::closed_form::{C11, C14};
+use crate::common::shapes::rectangle;
 use crate::quadrature::{Parallelogram, gauss};
-use crate::shapes::{KERNEL, close, many_sided, moved, rectangle, seen, wall};
+use crate::shapes::{KERNEL, close, many_sided, moved, seen, wall};
 use glam::{DVec3, dvec3};
 use radiosity::form_factor::{point_to_disk, point_to_polygon};
 use std::f64::consts::PI;
@@ -44,26 +46,6 @@ const PERPENDICULAR_DISK: [[f64; 4]; 2] = [
 const C41: [[f64; 4]; 2] = [
     [1.0, 1.0, 1.0, 0.3819660112501051],
     [1.0, 2.0, 1.5, 0.6016533443880441],
-];
-
-/// Identical opposed rectangles a x b, gap c: a, b, c, F.
-const C11: [[f64; 4]; 6] = [
-    [1.0, 1.0, 1.0, 0.19982489569838746],
-    [1.0, 1.0, 10.0, 0.0031620568387544677],
-    [1.0, 1.0, 0.1, 0.8269945223972565],
-    [1.0, 1.5, 0.5, 0.4755764365329532],
-    [2.0, 0.5, 1.0, 0.16526921900955807],
-    [4.0, 1.0, 3.0, 0.09536382321261395],
-];
-
-/// From w x l to the perpendicular h x l that shares the edge l: l, h, w, F.
-const C14: [[f64; 4]; 6] = [
-    [1.0, 1.0, 1.0, 0.20004377607540316],
-    [1.0, 0.5, 1.0, 0.1461866791057133],
-    [1.0, 2.0, 1.0, 0.2328526027953619],
-    [1.0, 1.0, 0.1, 0.4325136940068586],
-    [2.0, 1.0, 3.0, 0.10271343099399849],
-    [3.0, 1.0, 4.0, 0.08706944267430279],
 ];
 
 /// Triangles seen from the origin with normal +y: nine coordinates, then ρF for ρ = 0.5 in six digits as published with

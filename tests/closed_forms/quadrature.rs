@@ -1,6 +1,7 @@
 //! Integrals over parallelograms.
 
-use crate::shapes::{moved, rectangle, seen};
+use crate::common::shapes::rectangle;
+use crate::shapes::{moved, seen};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::LazyLock;

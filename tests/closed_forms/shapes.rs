@@ -1,5 +1,6 @@
 //! Polygons to look at, seen from the origin unless said otherwise, and closed forms for any arguments.
 
+use crate::common::shapes::rectangle;
 use glam::{DVec3, dvec3};
 use radiosity::form_factor::point_to_visible_polygon;
 use radiosity::geometry::jitter;
@@ -20,11 +21,6 @@ pub fn close(computed: f64, expected: f64, tolerance: f64, what: &str) {
         error <= tolerance,
         "{what}: {computed} for {expected}, off by {error:e}"
     );
-}
-
-/// A parallelogram that radiates along `u` x `v`.
-pub fn rectangle(corner: DVec3, u: DVec3, v: DVec3) -> [DVec3; 4] {
-    [corner, corner + u, corner + u + v, corner + v]
 }
 
 /// A wall of the plane y = `distance` that stands on z = 0 and radiates towards -y.

@@ -1,8 +1,9 @@
 //! What goes wrong where a form factor is written without care, and what must hold for any polygons.
 
 use crate::catalogue::{B3, B4};
+use crate::common::shapes::rectangle;
 use crate::quadrature::Parallelogram;
-use crate::shapes::{KERNEL, b4, close, moved, random, rectangle, room, seen, wall};
+use crate::shapes::{KERNEL, b4, close, moved, random, room, seen, wall};
 use glam::{DVec3, dvec3};
 use radiosity::form_factor::{point_to_disk, point_to_polygon, point_to_visible_polygon};
 use radiosity::geometry::polygon;

@@ -4,6 +4,26 @@ use crate::common::reference::Sample;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
+/// Identical opposed rectangles (C-11 of Howell's catalogue) a x b, gap c: a, b, c, F.
+pub const C11: [[f64; 4]; 6] = [
+    [1.0, 1.0, 1.0, 0.19982489569838746],
+    [1.0, 1.0, 10.0, 0.0031620568387544677],
+    [1.0, 1.0, 0.1, 0.8269945223972565],
+    [1.0, 1.5, 0.5, 0.4755764365329532],
+    [2.0, 0.5, 1.0, 0.16526921900955807],
+    [4.0, 1.0, 3.0, 0.09536382321261395],
+];
+
+/// From w x l to the perpendicular h x l that shares the edge l (C-14): l, h, w, F.
+pub const C14: [[f64; 4]; 6] = [
+    [1.0, 1.0, 1.0, 0.20004377607540316],
+    [1.0, 0.5, 1.0, 0.1461866791057133],
+    [1.0, 2.0, 1.0, 0.2328526027953619],
+    [1.0, 1.0, 0.1, 0.4325136940068586],
+    [2.0, 1.0, 3.0, 0.10271343099399849],
+    [3.0, 1.0, 4.0, 0.08706944267430279],
+];
+
 /// Lambert's formula: the form factor from a surface element to a polygon that lies above the element's horizon,
 /// counter-clockwise seen from the element.
 pub fn to_polygon(point: DVec3, normal: DVec3, corners: &[DVec3]) -> f64 {

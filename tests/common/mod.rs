@@ -5,6 +5,7 @@ pub mod closed_form;
 pub mod reference;
 pub mod shapes;
 
+use radiosity::solver::Preset;
 use std::path::{Path, PathBuf};
 
 /// The folder of a scene of the project.
@@ -12,4 +13,9 @@ pub fn scene_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
         .join(name)
+}
+
+/// A preset by its name.
+pub fn preset(name: &str) -> Result<Preset, String> {
+    serde_json::from_value(name.into()).map_err(|e| e.to_string())
 }

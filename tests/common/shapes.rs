@@ -1,8 +1,13 @@
-//! Scenes made by hand.
+//! Shapes, and scenes made by hand.
 
 use glam::{DVec3, Vec3};
 use radiosity::scene::{Corners, Material, Scene, Sides, Surface};
 use std::f32::consts::PI;
+
+/// A parallelogram that radiates along `u` x `v`.
+pub fn rectangle(corner: DVec3, u: DVec3, v: DVec3) -> [DVec3; 4] {
+    [corner, corner + u, corner + u + v, corner + v]
+}
 
 /// An empty scene in metres.
 pub fn empty() -> Scene {

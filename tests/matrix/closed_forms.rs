@@ -1,28 +1,10 @@
 //! Unobstructed pairs against closed forms: 1e-5 is asked, what is reached is in the tests.
 
-use crate::setup::{assert_closed, close, matrix, quads, rectangle};
+use crate::common::closed_form::{C11, C14};
+use crate::common::shapes::rectangle;
+use crate::setup::{assert_closed, close, matrix, quads};
 use glam::{DVec3, dvec3};
 use radiosity::scene::Scene;
-
-/// Identical opposed rectangles a x b, gap c (C-11 of Howell's catalogue): a, b, c, F.
-const C11: [[f64; 4]; 6] = [
-    [1.0, 1.0, 1.0, 0.19982489569838746],
-    [1.0, 1.0, 10.0, 0.0031620568387544677],
-    [1.0, 1.0, 0.1, 0.8269945223972565],
-    [1.0, 1.5, 0.5, 0.4755764365329532],
-    [2.0, 0.5, 1.0, 0.16526921900955807],
-    [4.0, 1.0, 3.0, 0.09536382321261395],
-];
-
-/// From w x l to the perpendicular h x l that shares the edge l (C-14): l, h, w, F.
-const C14: [[f64; 4]; 6] = [
-    [1.0, 1.0, 1.0, 0.20004377607540316],
-    [1.0, 0.5, 1.0, 0.1461866791057133],
-    [1.0, 2.0, 1.0, 0.2328526027953619],
-    [1.0, 1.0, 0.1, 0.4325136940068586],
-    [2.0, 1.0, 3.0, 0.10271343099399849],
-    [3.0, 1.0, 4.0, 0.08706944267430279],
-];
 
 /// What is reached; 1e-5 is what is asked.
 const REACHED: f64 = 1e-6;

@@ -1,8 +1,8 @@
 //! Obstructed pairs against independent quadrature: millions of segments, with nothing of the product in between.
 
+use crate::common::shapes::rectangle;
 use crate::setup::{
-    assert_closed, close, hanging_block, matrix, matrix_with, portable, quads, rectangle,
-    standing_block,
+    assert_closed, close, hanging_block, matrix, matrix_with, portable, quads, standing_block,
 };
 use glam::{DVec3, dvec3};
 use radiosity::matrix::Options;

@@ -37,11 +37,6 @@ pub fn quads(list: &[[DVec3; 4]]) -> Scene {
     scene
 }
 
-/// A rectangle with corner `at` and sides u and v, radiating along u × v.
-pub fn rectangle(at: DVec3, u: DVec3, v: DVec3) -> [DVec3; 4] {
-    [at, at + u, at + u + v, at + v]
-}
-
 /// A room of 1 with a cuboid between the given corners in it, all radiating into the space between.
 pub fn room_with_block(low: DVec3, high: DVec3) -> Scene {
     let mut scene = empty();

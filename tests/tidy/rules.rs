@@ -60,14 +60,15 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 13] = [
+const IMPORTS: [(&str, &[&str]); 14] = [
     ("geometry", &[]),
     ("radiometry", &[]),
+    ("threads", &[]),
     ("scene", &["geometry", "radiometry"]),
     ("visibility", &["geometry"]),
     ("form_factor", &["geometry", "radiometry", "visibility"]),
     ("mesh", &["geometry", "radiometry", "scene"]),
-    ("matrix", SOLVER),
+    ("matrix", MATRIX),
     ("solver", SOLVER),
     (
         "solution",
@@ -80,7 +81,14 @@ const IMPORTS: [(&str, &[&str]); 13] = [
     ),
     (
         "pipeline",
-        &["scene", "visibility", "mesh", "solver", "solution"],
+        &[
+            "scene",
+            "threads",
+            "visibility",
+            "mesh",
+            "solver",
+            "solution",
+        ],
     ),
     ("cli", CLI),
 ];
@@ -88,6 +96,16 @@ const SOLVER: &[&str] = &[
     "geometry",
     "radiometry",
     "scene",
+    "visibility",
+    "form_factor",
+    "mesh",
+];
+/// The same, and threads of its own.
+const MATRIX: &[&str] = &[
+    "geometry",
+    "radiometry",
+    "scene",
+    "threads",
     "visibility",
     "form_factor",
     "mesh",

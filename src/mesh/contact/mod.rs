@@ -96,7 +96,7 @@ pub struct Pieces {
 
 /// Splits the surfaces of a scene along their lines of contact; the pieces' corners are in the frame.
 pub fn pieces(scene: &Scene, frame: &Frame) -> Pieces {
-    let positions: Vec<DVec3> = scene.vertices.iter().map(|v| frame.enter(*v)).collect();
+    let positions = scene.positions_in(frame);
     let reach = REACH * frame.extent();
     let neighbours = Neighbours::new(&scene.surfaces, &positions);
     let outlines = Outlines::new(&scene.surfaces);
