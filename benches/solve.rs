@@ -32,6 +32,7 @@ fn compare(name: &str, scene: &Scene, preset: Preset) {
                 options: preset.options(),
                 engine,
                 threads: 0,
+                ..Settings::default()
             };
             let started = Instant::now();
             if let Ok(solution) = solve(scene, &settings, &mut Silent) {

@@ -16,7 +16,7 @@ mod common;
 use clap::Parser;
 use common::reference::{self, Deviation, Known, Sample};
 use radiosity::scene::Scene;
-use radiosity::solver::{Options, Preset, Silent};
+use radiosity::solver::{Changes, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
 use std::error::Error;
@@ -53,12 +53,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn compare(scene: &Scene, samples: &[Sample], request: &Request) -> Result<(), Box<dyn Error>> {
+    let changes: Changes = request.set.iter().cloned().collect();
     for preset in &request.presets {
-        let options = with(preset.options(), &request.set)?;
+        let options = preset.options().with(&changes)?;
         let settings = Settings {
             options,
             engine: request.engine,
             threads: request.threads,
+            ..Settings::default()
         };
         let solution = solve(scene, &settings, &mut Silent)?;
         let deviation = Deviation::of(&solution, samples);
@@ -101,19 +103,4 @@ fn setting(text: &str) -> Result<Setting, String> {
     let (name, value) = text.split_once('=').ok_or("expected OPTION=VALUE")?;
     let value = serde_json::from_str(value).map_err(|e| e.to_string())?;
     Ok((name.to_owned(), value))
-}
-
-fn with(options: Options, set: &[Setting]) -> Result<Options, Box<dyn Error>> {
-    let mut json = serde_json::to_value(options)?;
-    for (name, value) in set {
-        let within = if json["limits"].get(name).is_some() {
-            &mut json["limits"]
-        } else {
-            &mut json
-        };
-        *within
-            .get_mut(name)
-            .ok_or_else(|| format!("no option {name}"))? = value.clone();
-    }
-    Ok(serde_json::from_value(json)?)
 }

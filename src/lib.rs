@@ -45,5 +45,5 @@ pub mod solver;
 mod threads;
 pub mod visibility;
 
-pub use pipeline::{Settings, SolveError, solve, solve_to_error};
+pub use pipeline::{Run, Settings, SolveError, Target, solve};
 pub use threads::ThreadsError;

@@ -56,7 +56,8 @@ impl CliError {
             | CliError::Solution(_)
             | CliError::Input(_)
             | CliError::Enforce(_)
-            | CliError::Matrix(MatrixError::NothingRadiates) => Code::BadInput,
+            | CliError::Matrix(MatrixError::NothingRadiates)
+            | CliError::Solve(SolveError::NotKept | SolveError::OtherScene(_)) => Code::BadInput,
             _ => Code::Failure,
         }
     }

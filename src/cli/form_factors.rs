@@ -2,8 +2,8 @@
 
 use super::CliError;
 use super::error::Code;
-use super::flags::{named, positive};
 use super::heat::{self, write_radiosity};
+use super::values::{named, not_negative, positive};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
 use crate::output::{
     Dropped, MatrixTable, Sink, write_atomically, write_matrix_csv, write_matrix_market, write_npz,
@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     temperatures: Option<PathBuf>,
     /// Leave entries below this out of an .mtx; says what share of the flux they carry
-    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = super::flags::not_negative)]
+    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = not_negative)]
     cut_off: f64,
     /// Who traces rays where there is too much between two surfaces: auto, embree, obvhs or brute-force
     #[arg(long, default_value = "auto", value_name = "ENGINE")]

@@ -5,11 +5,15 @@ mod flags;
 mod form_factors;
 mod heat;
 mod info;
+mod memory;
 mod pictures;
 mod probe;
 mod progress;
 mod render;
+mod resume;
+mod session;
 mod solve;
+mod values;
 
 use clap::{Parser, Subcommand};
 use error::CliError;
@@ -30,6 +34,8 @@ const EXIT_CODES: &str = "Exit codes: 0 success, 1 failure while running or writ
 enum Command {
     /// Solve a scene: writes the solution, a lit mesh, pictures and a report.
     Solve(solve::Arguments),
+    /// Go on with a solve: from a checkpoint, with stricter options, or with other emitters.
+    Resume(resume::Arguments),
     /// Draw pictures of a solution.
     Render(render::Arguments),
     /// Read the light at points of a solution.
@@ -44,6 +50,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Resume(arguments) => resume::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
         Command::FormFactors(arguments) => form_factors::run(&arguments),

@@ -3,6 +3,7 @@
 use crate::solver::{Control, Observer, Progress};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Set by ctrl-C or a termination signal.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -23,10 +24,17 @@ pub(super) fn catch_interrupts() {
     }
 }
 
-/// Shows progress and passes interrupts on.
+/// Whether ctrl-C or a termination signal asked to stop.
+pub(super) fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::SeqCst)
+}
+
+/// Shows progress, passes interrupts on, and stops the solve when a checkpoint is due.
 pub(super) struct Bar {
     bar: ProgressBar,
     tolerance: f64,
+    /// When the solve is to be left for a checkpoint.
+    pub due: Option<Instant>,
 }
 
 impl Bar {
@@ -37,6 +45,7 @@ impl Bar {
         Self {
             bar: ProgressBar::new(STEPS).with_style(style),
             tolerance: tolerance.clamp(1e-9, 0.5),
+            due: None,
         }
     }
 
@@ -59,7 +68,7 @@ impl Observer for Bar {
             now.shots + 1,
             HumanCount(now.elements as u64),
         ));
-        if INTERRUPTED.load(Ordering::SeqCst) {
+        if is_interrupted() || self.due.is_some_and(|due| Instant::now() >= due) {
             Control::Stop
         } else {
             Control::Continue

@@ -3,86 +3,133 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
+use super::memory::peak_memory;
 use super::pictures::draw;
-use super::progress::{Bar, catch_interrupts};
+use super::progress::catch_interrupts;
+use super::session::Session;
+use super::values::duration;
 use crate::output::{SummaryRow, summary_table, write_atomically, write_ply};
 use crate::radiometry::radiance_from_radiosity;
 use crate::render::{RenderOptions, Tone};
 use crate::scene::Scene;
-use crate::solution::Solution;
+use crate::solution::{Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
-use crate::{Settings, solve, solve_to_error};
+use crate::{Run, Settings};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The solution file that the other commands read.
 pub(super) const SOLUTION: &str = "solution.rad";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj
-    scene: PathBuf,
+    /// A folder with a scene.toml, a .toml, or an .obj; with --from, the report's scene if left out
+    #[arg(required_unless_present = "from")]
+    scene: Option<PathBuf>,
+    /// Take engine and options from the report.json of another solve, to repeat it
+    #[arg(long, value_name = "REPORT", conflicts_with_all = ["preset", "target_error"])]
+    from: Option<PathBuf>,
     /// Folder for the results; made if it is not there
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Who traces the rays: auto, embree, obvhs or brute-force
-    #[arg(long, default_value = "auto", value_name = "ENGINE")]
-    engine: EngineChoice,
-    /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    threads: usize,
-    /// Leave the pictures out
-    #[arg(long)]
-    no_pictures: bool,
+    #[command(flatten)]
+    how: How,
     #[command(flatten)]
     flags: SolveFlags,
 }
 
+/// How a solve is done, whatever its options.
+#[derive(Debug, Args)]
+pub(super) struct How {
+    /// Who traces the rays: auto (the default), embree, obvhs or brute-force
+    #[arg(long, value_name = "ENGINE")]
+    pub engine: Option<EngineChoice>,
+    /// Threads; 0 for as many as the machine has
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub threads: usize,
+    /// Leave the pictures out
+    #[arg(long)]
+    pub no_pictures: bool,
+    /// Save the state at the start and then at these intervals (60 s if no TIME is given), for `radiosity resume`
+    #[arg(long, value_name = "TIME", value_parser = duration, num_args = 0..=1, default_missing_value = "60")]
+    pub checkpoint: Option<Duration>,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
-    let scene = Scene::load(&arguments.scene)?;
+    let model = arguments.from.as_deref().map(read_report).transpose()?;
+    let file = arguments.scene.as_ref();
+    let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
+    let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
+    let scene = Scene::load(file)?;
     let load = started.elapsed().as_secs_f64();
     warn(&scene);
     prepare(&arguments.output)?;
     catch_interrupts();
-    let settings = Settings {
-        options: arguments.flags.options(),
-        engine: arguments.engine,
-        threads: arguments.threads,
-    };
-    let mut bar = Bar::new(settings.options.tolerance);
     let flags = &arguments.flags;
-    let mut solution = match flags.target_error {
-        None => solve(&scene, &settings, &mut bar)?,
-        Some(target) => {
-            let adjust = |options| flags.over(options);
-            solve_to_error(&scene, &settings, target, &adjust, &mut bar)?
-        }
+    let (options, engine) = match &model {
+        Some(model) => (flags.over(model.options.clone())?, engine_of(model)?),
+        None => (flags.options()?, EngineChoice::Auto),
     };
-    bar.clear();
-    for warning in &solution.report.warnings[scene.warnings.len()..] {
-        eprintln!("warning: {warning}");
+    let settings = Settings {
+        options,
+        target: flags.target()?,
+        engine: arguments.how.engine.unwrap_or(engine),
+        threads: arguments.how.threads,
+    };
+    let known = scene.warnings.len();
+    let mut run = Run::new(scene, settings)?;
+    let report = run.report_mut();
+    report.seconds.load = load;
+    report.scene_file = Some(file.clone());
+    if let Some(model) = model.filter(|model| model.engine != report.engine) {
+        warn_of_another_engine(&model, report);
     }
-    if let Some(target) = solution.report.target.filter(|t| !t.reached) {
-        eprintln!(
-            "warning: the error of {}% was not reached in {} solves",
-            100.0 * target.n_rms,
-            target.rounds
-        );
-    }
-    solution.report.seconds.load = load;
-    write(&mut solution, arguments)?;
-    print!("{}", summary(&solution, started.elapsed().as_secs_f64()));
-    match solution.report.stop_reason {
-        StopReason::Interrupted => Ok(Code::Interrupted),
-        _ => Ok(Code::Success),
-    }
+    let session = Session {
+        output: &arguments.output,
+        how: &arguments.how,
+        started,
+        known_warnings: known,
+    };
+    session.complete(run)
 }
 
-fn warn(scene: &Scene) {
+fn read_report(path: &Path) -> Result<Report, CliError> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| CliError::Input(format!("cannot read {name}: {e}")))?;
+    serde_json::from_str(&text).map_err(|e| {
+        CliError::Input(format!(
+            "{name}: {e}; expected a report.json of `radiosity solve`"
+        ))
+    })
+}
+
+/// The engine that a report names.
+pub(super) fn engine_of(report: &Report) -> Result<EngineChoice, CliError> {
+    let name = report.engine.name.replace('_', "-");
+    name.parse().map_err(|e| CliError::Input(format!("{e}")))
+}
+
+/// The bits depend on the engine's version and instruction set.
+pub(super) fn warn_of_another_engine(then: &Report, now: &Report) {
+    let name = |of: &Report| {
+        format!(
+            "{} {} ({})",
+            of.engine.name, of.engine.version, of.engine.isa
+        )
+    };
+    eprintln!(
+        "warning: solved before by {}, now by {}: results may differ in their last digits",
+        name(then),
+        name(now)
+    );
+}
+
+pub(super) fn warn(scene: &Scene) {
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
     }
@@ -92,7 +139,7 @@ fn warn(scene: &Scene) {
 }
 
 /// Makes the folder and finds out before the solve whether it can be written to.
-fn prepare(folder: &Path) -> Result<(), CliError> {
+pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     let refuse = |error: std::io::Error| {
         CliError::System(format!("cannot write to {}: {error}", folder.display()))
     };
@@ -102,9 +149,9 @@ fn prepare(folder: &Path) -> Result<(), CliError> {
     std::fs::remove_file(&probe).map_err(refuse)
 }
 
-fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError> {
+/// Writes all results.
+pub(super) fn write(solution: &mut Solution, folder: &Path, how: &How) -> Result<(), CliError> {
     let started = Instant::now();
-    let folder = &arguments.output;
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     let lit = solution.lit_mesh();
     let tone = Tone::for_mesh(&lit);
@@ -112,11 +159,11 @@ fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError>
     write_ply(&folder.join("solution.ply"), &lit, errors.as_deref(), |v| {
         tone.colour(radiance_from_radiosity(v.radiosity))
     })?;
-    if !arguments.no_pictures {
+    if !how.no_pictures {
         for (number, camera) in solution.cameras.iter().enumerate() {
             // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
             let into = if number == 0 {
-                folder.clone()
+                folder.to_path_buf()
             } else {
                 folder.join(&camera.name)
             };
@@ -124,13 +171,14 @@ fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError>
                 &lit,
                 camera,
                 &RenderOptions::standard(),
-                arguments.engine,
-                arguments.threads,
+                how.engine.unwrap_or_default(),
+                how.threads,
                 &into,
             )?;
         }
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
+    solution.report.peak_memory = peak_memory();
     let report =
         serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
     write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
@@ -138,7 +186,7 @@ fn write(solution: &mut Solution, arguments: &Arguments) -> Result<(), CliError>
 }
 
 /// The paper's Table 1 for this solve, and what the table leaves out.
-fn summary(solution: &Solution, seconds: f64) -> String {
+pub(super) fn summary(solution: &Solution, seconds: f64) -> String {
     let report = &solution.report;
     let row = SummaryRow {
         scene: report.scene.clone(),

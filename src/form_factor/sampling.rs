@@ -14,7 +14,7 @@ use crate::radiometry::Spectrum;
 use crate::visibility::{Fans, MAX_FAN, Visibility};
 
 /// What a point receives from one source.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Gather {
     /// Irradiance that arrives.
     pub irradiance: Spectrum,

@@ -126,9 +126,9 @@ impl Mesh {
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
         for element in 0..self.elements.len() {
             let of = self.elements[element];
-            if of.is_leaf() && self.touched[of.patch as usize] {
+            if self.touched[of.patch as usize] {
                 let mut hanging = [NONE; 4];
-                for (side, a, b) in of.sides() {
+                for (side, a, b) in of.sides().filter(|_| of.is_leaf()) {
                     let middle = self.vertices[a as usize]
                         .lattice
                         .midpoint(self.vertices[b as usize].lattice);

@@ -1,6 +1,6 @@
 //! A mesh that was read from a file: what it says is checked, what follows from it is computed again.
 
-use super::{Mesh, NONE};
+use super::Mesh;
 
 impl Mesh {
     /// Checks a mesh that was read and restores what is not stored. Errors say what does not fit.
@@ -59,7 +59,6 @@ impl Mesh {
             .zip(0..)
             .map(|(v, number)| ((v.patch, v.lattice), number))
             .collect();
-        self.elements.iter_mut().for_each(|e| e.hanging = [NONE; 4]);
         let buried = std::mem::take(&mut self.buried);
         self.touched = vec![true; patches];
         self.finish_topology(0, &buried);

@@ -1,24 +1,26 @@
-//! From a scene to its solution in one call: mesh, visibility, solve, report.
-//! [`solve_to_error`] repeats it until the estimated error is small enough.
+//! From a scene to its solution: mesh, visibility, solve, report. [`solve`] does it in one call, a [`Run`] in as many as one likes.
 
+mod report;
+mod run;
 mod target;
 
-pub use target::solve_to_error;
+pub use run::Run;
+pub use target::Target;
 
-use crate::mesh::Mesh;
 use crate::scene::Scene;
-use crate::solution::{EngineReport, PowerReport, Report, Seconds, Solution};
-use crate::solver::{Observer, Options, Solver, occluders};
-use crate::threads::{ThreadsError, pool};
-use crate::visibility::{EngineChoice, VisibilityError, build};
-use std::time::Instant;
+use crate::solution::Solution;
+use crate::solver::{Observer, Options};
+use crate::threads::ThreadsError;
+use crate::visibility::{EngineChoice, VisibilityError};
 use thiserror::Error;
 
 /// How a scene is solved.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
-    /// Thresholds and limits.
+    /// Thresholds and limits; with a target, what it does not fix comes from there.
     pub options: Options,
+    /// The error to be reached, in place of thresholds.
+    pub target: Option<Target>,
     /// Who traces the rays.
     pub engine: EngineChoice,
     /// Threads; 0 for as many as the machine has.
@@ -34,6 +36,15 @@ pub enum SolveError {
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] ThreadsError),
+    /// The solution is of an older format, which did not keep what it takes to go on.
+    #[error("this solution was written by an earlier version and cannot be continued, only shown")]
+    NotKept,
+    /// The scene is not the one that was solved, but for what its surfaces emit.
+    #[error("a solve can go on with other emitters, not with another scene: {0}")]
+    OtherScene(String),
+    /// An option that a target fixes is none.
+    #[error("{0}")]
+    Option(String),
 }
 
 /// Solves `scene`; `observer` hears of the progress and may stop it. The same settings on the same instruction set give the same
@@ -43,68 +54,7 @@ pub fn solve(
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> Result<Solution, SolveError> {
-    let started = Instant::now();
-    let pool = pool(settings.threads)?;
-    let threads = pool.current_num_threads();
-    let mesh = pool.install(|| Mesh::new(scene, settings.options.limits));
-    let visibility = build(settings.engine, &occluders(scene, &mesh), threads)?;
-    let solver =
-        pool.install(|| Solver::new(scene, mesh, visibility.as_ref(), settings.options.clone()));
-    let built = Instant::now();
-    let outcome = pool.install(|| solver.run(observer));
-    let engine = visibility.info();
-    let mesh = outcome.mesh;
-    let report = Report {
-        scene: scene.name.clone(),
-        engine: EngineReport {
-            name: engine.name.to_owned(),
-            version: engine.version,
-            isa: engine.isa,
-            packet_width: engine.packet_width,
-        },
-        threads,
-        input_patches: scene.input_polygons,
-        patches: mesh.patches.len(),
-        shots: outcome.shots,
-        meshing_shots: outcome.meshing_shots,
-        max_depth: mesh.depth(),
-        elements: mesh.leaves().count(),
-        vertices: mesh.vertices.len(),
-        buried_vertices: mesh.buried.iter().filter(|b| **b).count(),
-        rays: outcome.rays,
-        seconds: Seconds {
-            load: 0.0,
-            build: (built - started).as_secs_f64(),
-            solve: built.elapsed().as_secs_f64(),
-            write: 0.0,
-        },
-        stop_reason: outcome.stop_reason,
-        reference_irradiance: outcome.reference_irradiance,
-        power: PowerReport::new(&outcome.ledger, |p| p.element_sum()),
-        power_rgb: PowerReport::new(&outcome.ledger, |p| p.to_array()),
-        audit: outcome.audit,
-        target: None,
-        options: settings.options.clone(),
-        warnings: warnings(scene, &mesh),
-    };
-    Ok(Solution {
-        report,
-        cameras: scene.cameras.clone(),
-        metres_per_unit: scene.metres_per_unit,
-        mesh,
-        light: outcome.light,
-    })
-}
-
-/// What the reader found suspicious, and what could not be meshed as it should.
-fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
-    let mut warnings = scene.warnings.clone();
-    let count = mesh.unsplit_contacts;
-    if count > 0 {
-        let plural = if count == 1 { "" } else { "s" };
-        warnings.push(format!(
-            "{count} surface{plural} not split where others meet: light may leak along the contacts"
-        ));
-    }
-    warnings
+    let mut run = Run::new(scene.clone(), settings.clone())?;
+    run.go(observer)?;
+    Ok(run.finish())
 }

@@ -1,10 +1,8 @@
-//! Solving until the estimated error is small enough.
+//! Solving until the estimated error is small enough: rounds with stricter and stricter options.
 
-use super::{Settings, SolveError, solve};
-use crate::scene::Scene;
-use crate::solution::{Solution, TargetReport};
-use crate::solver::{Observer, Options, StopReason};
-use std::time::Instant;
+use super::SolveError;
+use crate::solution::TargetReport;
+use crate::solver::{Changes, Options};
 
 /// The most solves on the way to a target.
 const ROUNDS: usize = 5;
@@ -21,53 +19,49 @@ const LOOSEST: f64 = -0.5;
 /// The nRMS of a plain scene, about, at strictness 0 and how many times less it is at 1: where the first solve starts.
 const USUAL: (f64, f64) = (0.025, 5.0);
 
-/// Solves `scene` with thresholds that keep the estimated nRMS error of the irradiance below `target`: first with those that
-/// usually do, then with stricter ones in proportion to what was missed. `adjust` has the last word on the options of each
-/// round. The report's `target` says whether it was reached; if not, the solution is the best there was.
-pub fn solve_to_error(
-    scene: &Scene,
-    settings: &Settings,
-    target: f64,
-    adjust: &dyn Fn(Options) -> Options,
-    observer: &mut dyn Observer,
-) -> Result<Solution, SolveError> {
-    let started = Instant::now();
-    let limit = settings.options.time_limit;
-    let mut strictness = ((USUAL.0 / target).ln() / USUAL.1.ln()).clamp(LOOSEST, STRICTEST);
-    let mut best: Option<Solution> = None;
-    let mut rounds = 0;
-    loop {
-        rounds += 1;
-        let mut options = adjust(Options::at(strictness));
-        options.audit_points = options.audit_points.max(FEWEST_POINTS);
-        options.time_limit = limit.map(|limit| limit.saturating_sub(started.elapsed()));
-        let settings = Settings {
-            options,
-            ..settings.clone()
-        };
-        let mut solution = solve(scene, &settings, observer)?;
-        let stopped = solution.report.stop_reason != StopReason::Converged;
-        let estimate = solution.report.audit.map_or(0.0, |audit| audit.n_rms);
-        solution.report.target = Some(TargetReport {
-            n_rms: target,
-            reached: estimate <= target && !stopped,
-            rounds,
-        });
-        if let Some(previous) = best.take().filter(|_| stopped) {
-            return Ok(stopped_after(previous, solution));
+/// An error to be reached, in place of thresholds: the scene is solved with those that usually do, then with stricter ones in
+/// proportion to what was missed. The report's `target` says whether it was reached; if not, the solution is the best there was.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// The estimated nRMS error of the irradiance is to be below this.
+    pub n_rms: f64,
+    /// Options that are not for the target to choose.
+    pub fixed: Changes,
+}
+
+impl Target {
+    /// What the report says before the first round.
+    pub(super) fn report(&self) -> TargetReport {
+        let strictness = (USUAL.0 / self.n_rms).ln() / USUAL.1.ln();
+        TargetReport {
+            n_rms: self.n_rms,
+            reached: false,
+            rounds: 1,
+            strictness: strictness.clamp(LOOSEST, STRICTEST),
+            fixed: self.fixed.clone(),
         }
-        if estimate <= target || stopped || strictness >= STRICTEST || rounds == ROUNDS {
-            return Ok(solution);
-        }
-        // A little more than what is missing, so that one more round is enough.
-        strictness += (estimate / target).ln() / USUAL.1.ln() * 1.1 + 0.08;
-        strictness = strictness.min(STRICTEST);
-        best = Some(solution);
     }
 }
 
-/// A complete solution is worth more than the beginning of a stricter one.
-fn stopped_after(mut complete: Solution, stopped: Solution) -> Solution {
-    complete.report.stop_reason = stopped.report.stop_reason;
-    complete
+impl TargetReport {
+    /// The options of the round that is under way.
+    pub(super) fn options(&self) -> Result<Options, SolveError> {
+        let options = Options::at(self.strictness).with(&self.fixed);
+        let mut options = options.map_err(SolveError::Option)?;
+        options.audit_points = options.audit_points.max(FEWEST_POINTS);
+        Ok(options)
+    }
+
+    /// Takes in what a complete round has come to; whether another is worth it, with stricter options.
+    pub(super) fn needs_another(&mut self, estimate: f64) -> bool {
+        self.reached = estimate <= self.n_rms;
+        if self.reached || self.strictness >= STRICTEST || self.rounds == ROUNDS {
+            return false;
+        }
+        // A little more than what is missing, so that one more round is enough.
+        self.strictness += (estimate / self.n_rms).ln() / USUAL.1.ln() * 1.1 + 0.08;
+        self.strictness = self.strictness.min(STRICTEST);
+        self.rounds += 1;
+        true
+    }
 }

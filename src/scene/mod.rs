@@ -44,6 +44,7 @@
 //! repetitions, polygons without area and polygons whose boundary crosses itself.
 
 mod cameras;
+mod compare;
 mod duplicates;
 mod error;
 mod limits;
@@ -70,9 +71,10 @@ pub use summary::{MaterialSummary, Summary};
 use crate::geometry::Frame;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// A polygonal scene with diffuse materials. Lengths are in the scene's own unit, right-handed, y up.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The name shown in reports: the scene file's `name`, or the file's stem.
     pub name: String,
@@ -93,7 +95,7 @@ pub struct Scene {
 }
 
 /// A planar convex polygon with three or four corners.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
     /// Vertex indices, counter-clockwise seen from the front.
     pub corners: Corners,
@@ -106,7 +108,7 @@ pub struct Surface {
 }
 
 /// The three or four corners of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Corners {
     /// A triangle.
     Triangle([u32; 3]),
@@ -144,7 +146,7 @@ impl Scene {
 }
 
 /// The sides from which a surface radiates (reflects, and receives).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sides {
     /// The front only; the back absorbs everything and stays black.
     Front,
@@ -153,7 +155,7 @@ pub enum Sides {
 }
 
 /// An ideal diffuse material.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Its name in the file.
     pub name: String,
@@ -171,7 +173,7 @@ impl Material {
 }
 
 /// A pinhole camera.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Names the picture files.
     pub name: String,

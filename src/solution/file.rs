@@ -1,15 +1,21 @@
 //! The solution file: everything a later command needs, with a version and a checksum.
 //!
 //! Layout: 8 bytes of magic, version (u32), length of the payload (u64), CRC-32 of the payload (u32), all little endian, then
-//! the payload in the postcard format.
+//! the payload in the postcard format: [`Stored`]. The report, which grows with the program, is JSON in it. Files of version 1 are
+//! still read (`format_1`).
 
-use super::Solution;
+use super::{Continuation, Report, Solution, format_1};
+use crate::mesh::Mesh;
+use crate::scene::Camera;
+use crate::solver::Light;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"RADIOSOL";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 24;
 
 /// Why a solution file cannot be read.
@@ -33,10 +39,29 @@ pub enum SolutionError {
     },
 }
 
+/// The payload.
+#[derive(Serialize, Deserialize)]
+struct Stored<'a> {
+    report: String,
+    cameras: Cow<'a, [Camera]>,
+    metres_per_unit: f64,
+    mesh: Cow<'a, Mesh>,
+    light: Cow<'a, Light>,
+    continuation: Cow<'a, Option<Continuation>>,
+}
+
 impl Solution {
     /// Writes the solution file's bytes.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let payload = postcard::to_stdvec(self).map_err(io::Error::other)?;
+        let stored = Stored {
+            report: serde_json::to_string(&self.report)?,
+            cameras: Cow::Borrowed(&self.cameras),
+            metres_per_unit: self.metres_per_unit,
+            mesh: Cow::Borrowed(&self.mesh),
+            light: Cow::Borrowed(&self.light),
+            continuation: Cow::Borrowed(&self.continuation),
+        };
+        let payload = postcard::to_stdvec(&stored).map_err(io::Error::other)?;
         out.write_all(MAGIC)?;
         out.write_all(&VERSION.to_le_bytes())?;
         out.write_all(&(payload.len() as u64).to_le_bytes())?;
@@ -69,9 +94,9 @@ impl Solution {
                 .fold(0u32, |n, b| n << 8 | u32::from(*b))
         };
         let (version, checksum) = (u32_at(8), u32_at(20));
-        if version != VERSION {
+        if !(1..=VERSION).contains(&version) {
             return Err(format!(
-                "format version {version}, where this program reads {VERSION}"
+                "format version {version}, where this program reads 1 to {VERSION}"
             ));
         }
         let length = u64::from(u32_at(12)) | u64::from(u32_at(16)) << 32;
@@ -84,19 +109,52 @@ impl Solution {
         if crc32fast::hash(payload) != checksum {
             return Err("the checksum does not match: the file is damaged".into());
         }
-        let mut solution: Self =
-            postcard::from_bytes(payload).map_err(|e| format!("undecodable contents ({e})"))?;
-        let vertices = solution.mesh.vertices.len();
-        if [&solution.light.irradiance, &solution.light.unshot]
-            .iter()
-            .any(|of| of.len() != vertices)
-        {
+        if version == 1 {
+            format_1::decode(payload)?.checked()
+        } else {
+            Self::from_payload(payload)
+        }
+    }
+
+    /// Decodes what follows the header of a file of the present format. Any bytes give a sound solution or an error.
+    pub fn from_payload(payload: &[u8]) -> Result<Self, String> {
+        let stored: Stored = postcard::from_bytes(payload).map_err(undecodable)?;
+        let report: Report = serde_json::from_str(&stored.report).map_err(undecodable)?;
+        let solution = Self {
+            report,
+            cameras: stored.cameras.into_owned(),
+            metres_per_unit: stored.metres_per_unit,
+            mesh: stored.mesh.into_owned(),
+            light: stored.light.into_owned(),
+            continuation: stored.continuation.into_owned(),
+        };
+        solution.checked()
+    }
+
+    /// Checks that the parts fit each other, and restores what is not stored.
+    fn checked(mut self) -> Result<Self, String> {
+        self.mesh.restore()?;
+        let (vertices, patches) = (self.mesh.vertices.len(), self.mesh.patches.len());
+        let light = &self.light;
+        if light.irradiance.len() != vertices || light.unshot.len() != vertices {
             return Err("light that does not fit the mesh".into());
         }
-        if solution.light.exitance_unshot.len() != solution.mesh.patches.len() {
+        if light.exitance_unshot.len() != patches {
             return Err("exitance that does not fit the mesh".into());
         }
-        solution.mesh.restore()?;
-        Ok(solution)
+        if let Some(Continuation { scene, course }) = &self.continuation {
+            scene.check()?;
+            course.check(&self.mesh)?;
+            let surfaces = scene.surfaces.len();
+            let on_scene = |p: &crate::mesh::Patch| (p.surface as usize) < surfaces;
+            if !self.mesh.patches.iter().all(on_scene) {
+                return Err("a patch of no surface".into());
+            }
+        }
+        Ok(self)
     }
+}
+
+pub(super) fn undecodable(error: impl std::fmt::Display) -> String {
+    format!("undecodable contents ({error})")
 }

@@ -4,6 +4,7 @@
 
 mod conform;
 mod file;
+mod format_1;
 mod lit_mesh;
 mod probe;
 mod report;
@@ -14,12 +15,12 @@ pub use probe::{MATCH, Probe, Prober};
 pub use report::{EngineReport, PowerReport, Report, Seconds, TargetReport};
 
 use crate::mesh::Mesh;
-use crate::scene::Camera;
-use crate::solver::Light;
+use crate::scene::{Camera, Scene};
+use crate::solver::{Course, Light};
 use serde::{Deserialize, Serialize};
 
 /// A solved scene: what `solve` leaves and the other commands read back.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Solution {
     /// The facts of the solve.
     pub report: Report,
@@ -31,6 +32,17 @@ pub struct Solution {
     pub mesh: Mesh,
     /// The light on it.
     pub light: Light,
+    /// What it takes to go on; files of format 1 do not hold it.
+    pub continuation: Option<Continuation>,
+}
+
+/// What it takes, besides mesh and light, to go on with a solve.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Continuation {
+    /// The scene.
+    pub scene: Scene,
+    /// How far the solve has come.
+    pub course: Course,
 }
 
 impl Solution {

@@ -1,14 +1,18 @@
 //! What a solve says of itself: `report.json`.
 
 use crate::radiometry::Power;
-use crate::solver::{Audit, Ledger, Options, StopReason};
+use crate::solver::{Audit, Changes, Ledger, MeshingEnd, Options, StopReason};
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// The facts of a solve; serialised as `report.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Name of the scene.
     pub scene: String,
+    /// Where it was read, as the command was told.
+    #[serde(default)]
+    pub scene_file: Option<PathBuf>,
     /// Who traced the rays.
     pub engine: EngineReport,
     /// Threads used.
@@ -21,6 +25,9 @@ pub struct Report {
     pub shots: u64,
     /// Shots after which the mesh was tested: the paper's early iterations.
     pub meshing_shots: u64,
+    /// The limit that ended refinement, if one did.
+    #[serde(default)]
+    pub meshing_ended: Option<MeshingEnd>,
     /// Deepest level of a quadtree.
     pub max_depth: u32,
     /// Leaves of the quadtrees.
@@ -33,6 +40,9 @@ pub struct Report {
     pub rays: u64,
     /// Wall-clock time.
     pub seconds: Seconds,
+    /// The most memory that the process has held, bytes, where the system tells.
+    #[serde(default)]
+    pub peak_memory: Option<u64>,
     /// Why the solve ended.
     pub stop_reason: StopReason,
     /// The irradiance that relative thresholds are multiples of, W/m².
@@ -52,7 +62,7 @@ pub struct Report {
 }
 
 /// What became of `--target-error`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetReport {
     /// The estimated nRMS error that was asked for.
     pub n_rms: f64,
@@ -60,6 +70,12 @@ pub struct TargetReport {
     pub reached: bool,
     /// Solves that it took; the report is of the last.
     pub rounds: usize,
+    /// Where its options lie between the presets: 0 is draft, 1 standard, 2 accurate.
+    #[serde(default)]
+    pub strictness: f64,
+    /// Options that were not for the target to choose.
+    #[serde(default)]
+    pub fixed: Changes,
 }
 
 /// Who traced the rays.

@@ -6,9 +6,9 @@
 //! letting the mean error go through all reflections.
 
 use super::error::{ErrorModel, Squares};
+use super::light::Sign;
 use super::run::Solver;
 use super::shoot::evaluate;
-use super::source::source_of;
 use crate::form_factor::{Receiver, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
@@ -75,7 +75,7 @@ impl Solver<'_> {
         if places.is_empty() {
             return None;
         }
-        let whole = self.whole();
+        let whole = self.whole(Spectrum::ONE);
         let mut fine = self.sampler();
         fine.thresholds.difference *= FINER;
         fine.thresholds.estimate *= FINER;
@@ -105,10 +105,11 @@ impl Solver<'_> {
             {
                 *factor += f64::from(gather.irradiance.x);
             }
-            let power = whole.unshot_power(&self.mesh, patch);
+            let power = whole.unshot_power(&self.mesh, patch, Sign::Positive);
             leaving += power;
             if power != Power::ZERO {
-                let source = source_of(&self.mesh, &whole, patch, &self.options, &fine.thresholds);
+                let shooter = (patch, Sign::Positive);
+                let source = self.source_of(&whole, shooter, &fine.thresholds);
                 let arrived = evaluate(&fine, &source, &receivers).0;
                 for (sum, gather) in gathered.iter_mut().zip(arrived) {
                     *sum += gather.irradiance.as_dvec3();
@@ -136,7 +137,7 @@ impl Solver<'_> {
             bias: bias / mean,
             model,
             received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or_default(),
-            sent_sum: self.sent_sum,
+            sent_sum: self.course.sent_sum,
         })
     }
 }

@@ -5,7 +5,7 @@
 //! unshot err in proportion to the light. The squares of both, with one factor each, add up to the square of the error; the
 //! factors are fitted to the points of the audit.
 
-use super::state::Light;
+use super::light::Light;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
 use serde::{Deserialize, Serialize};

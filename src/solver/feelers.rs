@@ -6,14 +6,15 @@
 //! a surface.
 
 use super::escape::{Backing, is_dark};
-use super::shoot::evaluate;
-use super::state::Light;
-use crate::form_factor::{Receiver, Sampler, Source};
+use super::light::Light;
+use super::shoot::{Beam, evaluate};
+use crate::form_factor::{Receiver, Source};
 use crate::geometry::polygon;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::Spectrum;
 use crate::visibility::{Ray, Visibility};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// The most feelers along one surface.
 const MOST: u32 = 16;
@@ -22,7 +23,7 @@ const MOST: u32 = 16;
 const PASSES: usize = 8;
 
 /// A point in the middle of a shadow, or where one would be if nothing else were in the way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Feeler {
     pub patch: u32,
     pub point: DVec3,
@@ -40,10 +41,10 @@ pub(super) fn feelers(
     mesh: &Mesh,
     light: &Light,
     backing: &[Backing],
-    (sampler, source): (&Sampler, &Source),
+    beam: Beam,
     reached: &[bool],
 ) -> (Vec<Feeler>, u64) {
-    let mut feelers = cast(mesh, source, sampler.visibility, backing);
+    let mut feelers = cast(mesh, beam.source, beam.sampler.visibility, backing);
     feelers.retain(|f| {
         let leaf = mesh.leaf_at(f.patch, f.at.0, f.at.1);
         reached[f.patch as usize] && mesh.may_split(leaf) && f.width < mesh.longest_side(leaf)
@@ -62,9 +63,9 @@ pub(super) fn feelers(
             (receiver, !number)
         })
         .collect();
-    let (gathers, rays) = evaluate(sampler, source, &points);
+    let (gathers, rays) = evaluate(beam.sampler, beam.source, &points);
     for (feeler, gather) in feelers.iter_mut().zip(gathers) {
-        feeler.irradiance = gather.irradiance;
+        feeler.irradiance = gather.irradiance * beam.sign.factor();
     }
     (feelers, rays)
 }

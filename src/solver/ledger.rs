@@ -2,7 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
-use crate::solver::Light;
+use crate::solver::{Light, Sign};
 
 /// The balance of a solve, W per channel: emitted = absorbed + escaped + unshot + residual.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,7 +38,10 @@ impl Ledger {
             ledger.emitted += patch.exitance.as_dvec3() * patch.area * square_metres;
             ledger.absorbed +=
                 (Power::ONE - patch.reflectance.as_dvec3()) * received * square_metres;
-            ledger.unshot += light.unshot_power(mesh, number) * square_metres;
+            for sign in Sign::ALL {
+                let power = light.unshot_power(mesh, number, sign) * f64::from(sign.factor());
+                ledger.unshot += power * square_metres;
+            }
         }
         ledger
     }

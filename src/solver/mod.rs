@@ -5,25 +5,28 @@
 
 mod audit;
 mod burial;
+mod course;
 mod error;
 mod escape;
 mod feelers;
 mod ledger;
+mod light;
 mod observer;
 mod options;
 mod outcome;
 mod refine;
 mod regather;
+mod room;
 mod run;
 mod shoot;
 mod source;
-mod state;
 
 pub use audit::{Audit, Span};
+pub use course::{Course, MeshingEnd};
 pub use error::ErrorModel;
 pub use ledger::Ledger;
+pub use light::{Light, Sign};
 pub use observer::{Control, Observer, Progress, Silent};
-pub use options::{FormFactorRule, Options, Preset, Quantity, Shooting};
+pub use options::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 pub use outcome::{Outcome, StopReason};
 pub use run::{Solver, occluders};
-pub use state::Light;

@@ -86,6 +86,12 @@ pub struct Options {
     pub max_shots: Option<u64>,
     /// At most this long.
     pub time_limit: Option<Duration>,
+    /// Refinement ends when there are this many leaves; balancing may add a few.
+    #[serde(default)]
+    pub max_elements: Option<usize>,
+    /// Refinement ends when the process, with all results written, would need about this much memory, bytes.
+    #[serde(default)]
+    pub memory_limit: Option<u64>,
 }
 
 /// Named sets of options.
@@ -129,6 +135,8 @@ impl Preset {
             audit_points: 256,
             max_shots: None,
             time_limit: None,
+            max_elements: None,
+            memory_limit: None,
         };
         match self {
             Preset::Draft => Options {
@@ -175,7 +183,27 @@ impl Default for Options {
     }
 }
 
+/// Options by name, in JSON; those of `limits` by their own names.
+pub type Changes = serde_json::Map<String, serde_json::Value>;
+
 impl Options {
+    /// These options with some replaced.
+    ///
+    /// # Errors
+    /// Names an option that does not exist, or a value of the wrong kind.
+    pub fn with(&self, changes: &Changes) -> Result<Self, String> {
+        let mut all = serde_json::to_value(self).map_err(|e| e.to_string())?;
+        for (name, value) in changes {
+            let within = match all["limits"].get(name) {
+                Some(_) => &mut all["limits"],
+                None => &mut all,
+            };
+            let place = within.get_mut(name);
+            *place.ok_or_else(|| format!("there is no option `{name}`"))? = value.clone();
+        }
+        serde_json::from_value(all).map_err(|e| e.to_string())
+    }
+
     /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps; less than 0 is looser than draft.
     pub fn at(strictness: f64) -> Self {
         let (low, high, way) = if strictness < 1.0 {

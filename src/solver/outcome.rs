@@ -1,10 +1,12 @@
 //! What a solve leaves, and why it ended.
 
 use super::audit::Audit;
+use super::course::Course;
 use super::ledger::Ledger;
-use super::state::Light;
+use super::light::Light;
 use crate::mesh::Mesh;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// Why a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,18 +31,16 @@ pub struct Outcome {
     pub mesh: Mesh,
     /// The light on it.
     pub light: Light,
+    /// How far it has come; with mesh and light, what it takes to go on.
+    pub course: Course,
     /// Where the power went.
     pub ledger: Ledger,
     /// The irradiance that relative thresholds are multiples of, W/m².
     pub reference_irradiance: f64,
-    /// Shots in all.
-    pub shots: u64,
-    /// Shots that tested the mesh.
-    pub meshing_shots: u64,
-    /// Occlusion rays traced.
-    pub rays: u64,
     /// The estimated error, if it was looked for.
     pub audit: Option<Audit>,
     /// Why it ended.
     pub stop_reason: StopReason,
+    /// Time that it took in all.
+    pub elapsed: Duration,
 }

@@ -3,10 +3,10 @@
 use super::burial::buried;
 use super::escape::Backing;
 use super::feelers::Feeler;
+use super::light::Light;
 use super::options::{Options, Quantity};
-use super::shoot::{evaluate, shoot_at};
-use super::state::Light;
-use crate::form_factor::{Gather, Receiver, Sampler, Source};
+use super::shoot::{Beam, evaluate, shoot_at};
+use crate::form_factor::{Gather, Receiver};
 use crate::mesh::{Lattice, Mesh, NONE};
 use crate::radiometry::Spectrum;
 use rustc_hash::FxHashMap;
@@ -17,11 +17,12 @@ pub(super) struct Refinement<'a> {
     pub light: &'a mut Light,
     /// What the shot gave to each vertex so far.
     pub arrived: &'a mut Vec<Gather>,
-    pub sampler: &'a Sampler<'a>,
-    pub source: &'a Source,
+    pub beam: Beam<'a>,
     pub options: &'a Options,
     pub backing: &'a [Backing],
     pub feelers: &'a [Feeler],
+    /// Elements that may be split.
+    pub room: usize,
     pub rays: u64,
 }
 
@@ -41,7 +42,18 @@ impl Refinement<'_> {
         failed.extend(self.overlooked());
         failed.sort_unstable();
         failed.dedup();
+        if failed.len() > self.room {
+            self.keep_largest(&mut failed);
+        }
         self.split(failed)
+    }
+
+    /// Where there is not room for all, large elements are worth more.
+    fn keep_largest(&self, failed: &mut Vec<u32>) {
+        let side = |element: &u32| self.mesh.longest_side(*element);
+        failed.sort_by(|a, b| side(b).total_cmp(&side(a)));
+        failed.truncate(self.room);
+        failed.sort_unstable();
     }
 
     /// Test 1: corners differ by more than ε_d.
@@ -87,7 +99,7 @@ impl Refinement<'_> {
         let local = vertices
             .map(|v| self.light.irradiance[*v as usize].max_element())
             .fold(0.0, f32::max);
-        self.sampler.thresholds.scale.at(f64::from(local))
+        self.beam.sampler.thresholds.scale.at(f64::from(local))
     }
 
     /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
@@ -191,7 +203,7 @@ impl Refinement<'_> {
                 }
             }
         }
-        let (gathers, rays) = evaluate(self.sampler, self.source, &points);
+        let (gathers, rays) = evaluate(self.beam.sampler, self.beam.source, &points);
         self.rays += rays;
         keys.into_iter()
             .zip(gathers.iter().map(|g| g.visibility))
@@ -215,19 +227,12 @@ impl Refinement<'_> {
             return fresh;
         }
         let first = first_vertex as u32;
-        let buried = buried(self.mesh, self.sampler.visibility, self.backing, first);
+        let buried = buried(self.mesh, self.beam.sampler.visibility, self.backing, first);
         self.mesh.finish_topology(first, &buried);
         let open: Vec<u32> = (first..self.mesh.vertices.len() as u32)
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();
-        self.rays += shoot_at(
-            self.mesh,
-            self.light,
-            self.sampler,
-            self.source,
-            &open,
-            self.arrived,
-        );
+        self.rays += shoot_at(self.mesh, self.light, self.beam, &open, self.arrived);
         let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, first);
         for (vertex, &now) in irradiance.iter().enumerate().skip(first_vertex) {

@@ -5,72 +5,101 @@
 //! then goes through all its reflections as an ambient term, so that fewer shots are needed before.
 
 use super::audit::Span;
-use super::observer::{Control, Observer};
+use super::course::{Gathering, Stage};
+use super::light::{Light, Sign};
 use super::run::Solver;
-use super::source::source_of;
+use super::shoot::Beam;
 use crate::radiometry::{Power, Spectrum};
 
 impl Solver<'_> {
-    /// Gathers; what was there stays if the observer stops it.
-    pub(super) fn regather(&mut self, observer: &mut dyn Observer) -> Control {
-        let unshot = self.unshot();
-        let ambient = self.ambient(unshot);
-        let mut whole = self.whole();
-        for irradiance in &mut whole.unshot {
-            *irradiance *= ambient;
+    /// Nothing gathered yet.
+    pub(super) fn gathering(&self) -> Gathering {
+        Gathering {
+            next: 0,
+            ambient: self.ambient(),
+            irradiance: vec![Spectrum::ZERO; self.mesh.vertices.len()],
+            escaped: Power::ZERO,
+            sums: Vec::new(),
+            whole: None,
         }
-        let emitted = self.emitted().element_sum();
-        let sampler = self.sampler();
-        let mut irradiance = vec![Spectrum::ZERO; self.mesh.vertices.len()];
-        let mut escaped = Power::ZERO;
-        let mut sums = Vec::new();
-        for shooter in 0..self.mesh.patches.len() {
-            let power = whole.unshot_power(&self.mesh, shooter).element_sum() / emitted;
-            if power <= 0.0 {
-                continue;
-            }
-            if observer.progress(&self.progress(unshot)) == Control::Stop {
-                return Control::Stop;
-            }
-            let source = source_of(
-                &self.mesh,
-                &whole,
-                shooter,
-                &self.options,
-                &sampler.thresholds,
-            );
-            let reached = self.reached(&source);
-            let arrived = self.arrivals(&sampler, &source, &reached);
-            let mut received = Power::ZERO;
-            for (vertex, gather) in arrived.iter().enumerate() {
-                irradiance[vertex] += gather.irradiance;
-                received += gather.irradiance.as_dvec3() * self.mesh.weights[vertex];
-            }
-            let lost = self.escape(shooter, &source, power, self.shots as u32 + shooter as u32);
-            escaped += lost;
-            if power > 1e-3 {
-                let sent = power * emitted;
-                sums.push(((received + lost).element_sum() / sent, sent));
-            }
-        }
-        self.light.irradiance = irradiance;
-        for ((unshot, now), gathered) in
-            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(whole.unshot)
-        {
-            *unshot = *now - gathered;
-        }
-        self.light.exitance_unshot.fill(false);
-        self.escaped = escaped;
-        self.sent_sum = Span::of(sums.into_iter());
-        observer.progress(&self.progress(unshot));
-        Control::Continue
     }
 
-    /// By how much reflected light grows until what is `unshot` has gone through all its reflections, were these like those of the
+    /// Gathers the light of one more patch; when there is none, it replaces what was there.
+    pub(super) fn gather(&mut self, mut so_far: Gathering) {
+        let whole = match so_far.whole.take() {
+            Some(whole) => whole,
+            None => self.whole(so_far.ambient),
+        };
+        let power = |patch: &u32| {
+            let power = whole.unshot_power(&self.mesh, *patch as usize, Sign::Positive);
+            power.element_sum()
+        };
+        let next = (so_far.next..self.mesh.patches.len() as u32).find(|p| power(p) > 0.0);
+        let Some(patch) = next else {
+            return self.take_over(so_far, whole);
+        };
+        let sent = power(&patch);
+        self.gather_from(patch as usize, sent, &whole, &mut so_far);
+        so_far.next = patch + 1;
+        so_far.whole = Some(whole);
+        self.course.stage = Stage::Gathering(so_far);
+    }
+
+    fn gather_from(&mut self, patch: usize, sent: f64, whole: &Light, into: &mut Gathering) {
+        let power = sent / self.emitted().element_sum();
+        let sampler = self.sampler();
+        let source = self.source_of(whole, (patch, Sign::Positive), &sampler.thresholds);
+        let beam = Beam {
+            sampler: &sampler,
+            source: &source,
+            sign: Sign::Positive,
+        };
+        let arrived = self.arrivals(beam, &self.reached(&source));
+        let mut received = Power::ZERO;
+        for (vertex, gather) in arrived.iter().enumerate() {
+            into.irradiance[vertex] += gather.irradiance;
+            received += gather.irradiance.as_dvec3() * self.mesh.weights[vertex];
+        }
+        let lost = self.escape(
+            patch,
+            &source,
+            power,
+            self.course.shots as u32 + patch as u32,
+        );
+        into.escaped += lost;
+        if power > 1e-3 {
+            into.sums
+                .push(((received + lost).element_sum() / sent, sent));
+        }
+    }
+
+    fn take_over(&mut self, gathered: Gathering, whole: Light) {
+        self.light.irradiance = gathered.irradiance;
+        for ((unshot, now), sent) in
+            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(whole.unshot)
+        {
+            *unshot = *now - sent;
+        }
+        self.light.exitance_unshot.fill(Spectrum::ZERO);
+        self.course.escaped = gathered.escaped;
+        self.course.sent_sum = Span::of(gathered.sums.into_iter());
+        self.course.stage = Stage::Finished;
+    }
+
+    /// The light with nothing shot yet, what is reflected multiplied by `ambient`.
+    pub(super) fn whole(&self, ambient: Spectrum) -> Light {
+        let reflected = |irradiance: &Spectrum| irradiance.max(Spectrum::ZERO) * ambient;
+        Light {
+            unshot: self.light.irradiance.iter().map(reflected).collect(),
+            ..Light::new(&self.mesh)
+        }
+    }
+
+    /// By how much reflected light grows until what is unshot has gone through all its reflections, were these like those of the
     /// light that has been shot: of a power M emitted, R is reflected so far and p of it unshot; then R∞ = R + p R∞ / M.
-    fn ambient(&self, unshot: Power) -> Spectrum {
+    fn ambient(&self) -> Spectrum {
         let emitted = self.emitted().max(Power::splat(f64::MIN_POSITIVE));
-        (Power::ONE - (unshot / emitted).min(Power::splat(0.5)))
+        (Power::ONE - (self.unshot() / emitted).min(Power::splat(0.5)))
             .recip()
             .as_vec3()
     }

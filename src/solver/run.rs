@@ -1,17 +1,18 @@
 //! The loop: select, shoot, refine, account, stop.
 
-use super::audit::Span;
+use super::audit::Audit;
 use super::burial::buried;
+use super::course::{Course, Shot, Stage};
 use super::escape::{Backing, escaped};
 use super::feelers::feelers;
 use super::ledger::Ledger;
+use super::light::{Light, Sign};
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
 use super::refine::Refinement;
-use super::shoot::{faces, shoot_at};
-use super::source::source_of;
-use super::state::Light;
+use super::shoot::{Beam, faces, shoot_at};
+use super::source::cells_of;
 use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
@@ -20,24 +21,22 @@ use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A solve in progress.
 pub struct Solver<'a> {
     pub(super) mesh: Mesh,
     pub(super) light: Light,
+    pub(super) course: Course,
     pub(super) visibility: &'a dyn Visibility,
     pub(super) options: Options,
     pub(super) backing: Vec<Backing>,
     /// Area of one square of the frame's unit, m².
     pub(super) square_metres: f64,
     pub(super) reference: f64,
-    pub(super) escaped: Power,
-    pub(super) shots: u64,
-    pub(super) meshing_shots: u64,
-    pub(super) rays: u64,
-    pub(super) sent_sum: Option<Span>,
-    pub(super) started: Instant,
+    /// What the solve took before it was taken up again.
+    spent: Duration,
+    started: Instant,
 }
 
 /// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
@@ -58,133 +57,221 @@ impl<'a> Solver<'a> {
         visibility: &'a dyn Visibility,
         options: Options,
     ) -> Self {
-        let mut backing = Vec::new();
-        for (number, surface) in (0..).zip(&scene.surfaces) {
-            let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
-            let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
-            let side = Backing {
-                normal: vector_area(&corners).normalize_or(DVec3::Z),
-                sides: surface.sides,
-                surface: number,
-            };
-            backing.extend(std::iter::repeat_n(side, corners.len() - 2));
-        }
+        let backing = backing(scene, &mesh);
         mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
         mesh.integrate();
         let light = Light::new(&mesh);
+        let state = (mesh, light, Course::default());
+        Self::resume(scene, state, visibility, options, Duration::ZERO)
+    }
+
+    /// Takes up a solve of `scene` where an [`Outcome`] has left it; `spent` is what counts against the time limit already.
+    pub fn resume(
+        scene: &Scene,
+        (mesh, light, course): (Mesh, Light, Course),
+        visibility: &'a dyn Visibility,
+        options: Options,
+        spent: Duration,
+    ) -> Self {
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
         let emitted: f64 = mesh
             .patches
             .iter()
             .map(|p| f64::from(p.exitance.max_element()) * p.area)
             .sum();
-        let square_metres = (scene.metres_per_unit / mesh.frame.scale()).powi(2);
-        let reference = if area > 0.0 { emitted / area } else { 0.0 };
         Self {
+            backing: backing(scene, &mesh),
+            square_metres: (scene.metres_per_unit / mesh.frame.scale()).powi(2),
+            reference: if area > 0.0 { emitted / area } else { 0.0 },
+            mesh,
             light,
+            course,
             visibility,
             options,
-            backing,
-            square_metres,
-            reference,
-            escaped: Power::ZERO,
-            shots: 0,
-            meshing_shots: 0,
-            rays: 0,
-            sent_sum: None,
+            spent,
             started: Instant::now(),
-            mesh,
         }
     }
 
-    /// Shoots until a reason to stop; keeps `observer` informed.
+    /// Goes on until there is a reason to stop; keeps `observer` informed.
     pub fn run(mut self, observer: &mut dyn Observer) -> Outcome {
-        let mut stop_reason = self.shoot_until_stop(observer);
-        if stop_reason == StopReason::Converged
-            && self.options.regather
-            && self.regather(observer) == Control::Stop
-        {
-            stop_reason = StopReason::Interrupted;
-        }
+        let stop_reason = self.advance(observer);
         let audit = match stop_reason {
             StopReason::NoEmitter | StopReason::Interrupted => None,
             _ => self.audit(),
         };
-        let ledger = Ledger::balance(&self.mesh, &self.light, self.escaped, self.square_metres);
+        self.outcome(stop_reason, audit)
+    }
+
+    /// Leaves the solve as it is.
+    pub fn leave(self) -> Outcome {
+        self.outcome(StopReason::Interrupted, None)
+    }
+
+    fn outcome(self, stop_reason: StopReason, audit: Option<Audit>) -> Outcome {
+        let escaped = self.course.escaped + self.escaping();
+        let ledger = Ledger::balance(&self.mesh, &self.light, escaped, self.square_metres);
         Outcome {
+            elapsed: self.elapsed(),
             mesh: self.mesh,
             light: self.light,
+            course: self.course,
             ledger,
             reference_irradiance: self.reference,
-            shots: self.shots,
-            meshing_shots: self.meshing_shots,
-            rays: self.rays,
             audit,
             stop_reason,
         }
     }
 
-    fn shoot_until_stop(&mut self, observer: &mut dyn Observer) -> StopReason {
-        let emitted = self.emitted();
-        if emitted.element_sum() <= 0.0 {
+    /// One batch of work after the other. Between them the state is whole: what goes on from it ends with the same bits.
+    fn advance(&mut self, observer: &mut dyn Observer) -> StopReason {
+        if self.emitted().element_sum() <= 0.0 {
             return StopReason::NoEmitter;
         }
         loop {
-            let powers = self.unshot_powers();
-            let unshot: Power = powers.iter().sum();
-            if observer.progress(&self.progress(unshot)) == Control::Stop {
+            if observer.progress(&self.progress()) == Control::Stop {
                 return StopReason::Interrupted;
             }
-            if unshot.element_sum() <= self.options.tolerance * emitted.element_sum() {
-                return StopReason::Converged;
-            }
-            if self
-                .options
-                .max_shots
-                .is_some_and(|most| self.shots >= most)
-            {
-                return StopReason::MaxShots;
-            }
-            if self
-                .options
-                .time_limit
-                .is_some_and(|limit| self.started.elapsed() >= limit)
-            {
-                return StopReason::TimeLimit;
-            }
-            let shooter = select(&powers);
-            let power = powers[shooter].element_sum() / emitted.element_sum();
-            if self.shoot(shooter, power, observer) == Control::Stop {
-                return StopReason::Interrupted;
+            match std::mem::take(&mut self.course.stage) {
+                Stage::Shooting => {
+                    if let Some(reason) = self.shoot() {
+                        return reason;
+                    }
+                }
+                Stage::Refining(shot) => self.refine(shot),
+                Stage::Gathering(so_far) => self.gather(so_far),
+                Stage::Finished => {
+                    self.course.stage = Stage::Finished;
+                    return StopReason::Converged;
+                }
             }
         }
     }
 
-    /// Adds the contribution of one patch everywhere, and refines where it falls.
-    fn shoot(&mut self, shooter: usize, power: f64, observer: &mut dyn Observer) -> Control {
+    /// One shot, the gathering if enough has been shot, or a reason to do neither.
+    fn shoot(&mut self) -> Option<StopReason> {
+        let powers = self.unshot_powers();
+        let emitted = self.emitted().element_sum();
+        let unshot: Power = powers.iter().sum();
+        if unshot.element_sum() <= self.options.tolerance * emitted {
+            self.course.stage = if self.options.regather {
+                Stage::Gathering(self.gathering())
+            } else {
+                Stage::Finished
+            };
+            return None;
+        }
+        let shots = self.course.shots;
+        if self.options.max_shots.is_some_and(|most| shots >= most) {
+            return Some(StopReason::MaxShots);
+        }
+        let elapsed = self.elapsed();
+        if self.options.time_limit.is_some_and(|most| elapsed >= most) {
+            return Some(StopReason::TimeLimit);
+        }
+        let strongest = select(&powers);
+        let power = powers[strongest].element_sum() / emitted;
+        self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
+        None
+    }
+
+    /// Adds the contribution of one patch to all vertices that there are.
+    fn shoot_from(&mut self, shooter: usize, sign: Sign, power: f64) {
         let sampler = self.sampler();
-        let source = source_of(
-            &self.mesh,
-            &self.light,
-            shooter,
-            &self.options,
-            &sampler.thresholds,
-        );
-        self.light.take(&self.mesh, shooter);
+        let from = (shooter, sign);
+        let thresholds = &sampler.thresholds;
+        let mut shot = Shot {
+            shooter: shooter as u32,
+            sign,
+            power,
+            cells: cells_of(&self.mesh, &self.light, from, &self.options, thresholds),
+            candidates: Vec::new(),
+            feelers: Vec::new(),
+            arrived: Vec::new(),
+            source: None,
+        };
+        let source = shot.source(&self.mesh);
+        let beam = Beam {
+            sampler: &sampler,
+            source: &source,
+            sign,
+        };
+        self.light.take(&self.mesh, shooter, sign);
         let reached = self.reached(&source);
-        let mut arrived = self.arrivals(&sampler, &source, &reached);
-        for (vertex, gather) in arrived.iter().enumerate() {
+        shot.arrived = self.arrivals(beam, &reached);
+        for (vertex, gather) in shot.arrived.iter().enumerate() {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
         }
-        let mut control = Control::Continue;
-        if power >= self.options.meshing_power {
-            control = self.refine(&sampler, &source, &reached, &mut arrived, observer);
-            self.meshing_shots += 1;
+        let meshes = power >= self.options.meshing_power && self.course.meshing_ended.is_none();
+        if meshes {
+            let elements = self.mesh.leaves();
+            let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
+            shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
+            let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
+            self.course.rays += rays;
+            shot.feelers = found;
+            shot.source = Some(source);
+            self.course.stage = Stage::Refining(shot);
+        } else {
+            self.end_shot(&shot, &source);
         }
-        self.escaped += self.escape(shooter, &source, power, self.shots as u32);
-        self.shots += 1;
-        control
+    }
+
+    /// One pass of refinement.
+    fn refine(&mut self, mut shot: Shot) {
+        let source = shot.source(&self.mesh);
+        if let Some(end) = self.meshing_end() {
+            self.course.meshing_ended = Some(end);
+            shot.candidates.clear();
+        }
+        if shot.candidates.is_empty() {
+            self.course.meshing_shots += 1;
+            return self.end_shot(&shot, &source);
+        }
+        let sampler = self.sampler();
+        let mut refinement = Refinement {
+            beam: Beam {
+                sampler: &sampler,
+                source: &source,
+                sign: shot.sign,
+            },
+            room: self.room(),
+            mesh: &mut self.mesh,
+            light: &mut self.light,
+            arrived: &mut shot.arrived,
+            options: &self.options,
+            backing: &self.backing,
+            feelers: &shot.feelers,
+            rays: 0,
+        };
+        shot.candidates = refinement.pass(&shot.candidates);
+        self.course.rays += refinement.rays;
+        self.mesh.integrate();
+        shot.source = Some(source);
+        self.course.stage = Stage::Refining(shot);
+    }
+
+    fn end_shot(&mut self, shot: &Shot, source: &Source) {
+        self.course.escaped += self.escape_of(shot, source);
+        self.course.shots += 1;
+    }
+
+    /// What escapes of the shot that is under way.
+    fn escaping(&self) -> Power {
+        match &self.course.stage {
+            Stage::Refining(shot) => {
+                let source = shot.clone().source(&self.mesh);
+                self.escape_of(shot, &source)
+            }
+            _ => Power::ZERO,
+        }
+    }
+
+    fn escape_of(&self, shot: &Shot, source: &Source) -> Power {
+        let seed = self.course.shots as u32;
+        let lost = self.escape(shot.shooter as usize, source, shot.power, seed);
+        lost * f64::from(shot.sign.factor())
     }
 
     pub(super) fn sampler(&self) -> Sampler<'a> {
@@ -203,13 +290,8 @@ impl<'a> Solver<'a> {
         patches.map(|p| faces(p, source, extent)).collect()
     }
 
-    /// What a source gives to each vertex of the patches that it reaches.
-    pub(super) fn arrivals(
-        &mut self,
-        sampler: &Sampler,
-        source: &Source,
-        reached: &[bool],
-    ) -> Vec<Gather> {
+    /// What a beam gives to each vertex of the patches that it reaches.
+    pub(super) fn arrivals(&mut self, beam: Beam, reached: &[bool]) -> Vec<Gather> {
         let patches = self.mesh.patches.iter().zip(reached);
         let vertices: Vec<u32> = patches
             .filter(|(_, reached)| **reached)
@@ -217,14 +299,7 @@ impl<'a> Solver<'a> {
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();
         let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        self.rays += shoot_at(
-            &self.mesh,
-            &self.light,
-            sampler,
-            source,
-            &vertices,
-            &mut arrived,
-        );
+        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &vertices, &mut arrived);
         let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, 0);
         for (gather, received) in arrived.iter_mut().zip(irradiance) {
@@ -246,50 +321,6 @@ impl<'a> Solver<'a> {
             self.mesh.frame.extent(),
             (rays, seed),
         )
-    }
-
-    fn refine(
-        &mut self,
-        sampler: &Sampler,
-        source: &Source,
-        reached: &[bool],
-        arrived: &mut Vec<Gather>,
-        observer: &mut dyn Observer,
-    ) -> Control {
-        let mut candidates: Vec<u32> = self
-            .mesh
-            .leaves()
-            .filter(|e| reached[self.mesh.elements[*e as usize].patch as usize])
-            .collect();
-        let (feelers, rays) = feelers(
-            &self.mesh,
-            &self.light,
-            &self.backing,
-            (sampler, source),
-            reached,
-        );
-        self.rays += rays;
-        while !candidates.is_empty() {
-            let mut refinement = Refinement {
-                mesh: &mut self.mesh,
-                light: &mut self.light,
-                arrived,
-                sampler,
-                source,
-                options: &self.options,
-                backing: &self.backing,
-                feelers: &feelers,
-                rays: 0,
-            };
-            candidates = refinement.pass(&candidates);
-            self.rays += refinement.rays;
-            self.mesh.integrate();
-            let unshot = self.unshot();
-            if observer.progress(&self.progress(unshot)) == Control::Stop {
-                return Control::Stop;
-            }
-        }
-        Control::Continue
     }
 
     /// Whether the nearest vertex to a point of a patch is open.
@@ -314,24 +345,21 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// By patch, first the positive, then the negative.
     fn unshot_powers(&self) -> Vec<Power> {
-        (0..self.mesh.patches.len())
-            .into_par_iter()
-            .map(|p| self.light.unshot_power(&self.mesh, p))
-            .collect()
+        let power = |of: usize| {
+            let (patch, sign) = (of / 2, Sign::ALL[of % 2]);
+            self.light.unshot_power(&self.mesh, patch, sign)
+        };
+        let count = 2 * self.mesh.patches.len();
+        (0..count).into_par_iter().map(power).collect()
     }
 
-    /// What all patches have unshot.
+    /// What all patches have unshot, the negative subtracted.
     pub(super) fn unshot(&self) -> Power {
-        self.unshot_powers().iter().sum()
-    }
-
-    /// The light with nothing shot yet.
-    pub(super) fn whole(&self) -> Light {
-        Light {
-            unshot: self.light.irradiance.clone(),
-            ..Light::new(&self.mesh)
-        }
+        let powers = self.unshot_powers();
+        let sum = |sign: usize| powers.iter().skip(sign).step_by(2).sum::<Power>();
+        sum(0) - sum(1)
     }
 
     pub(super) fn emitted(&self) -> Power {
@@ -342,22 +370,43 @@ impl<'a> Solver<'a> {
             .sum()
     }
 
-    pub(super) fn progress(&self, unshot: Power) -> Progress {
+    fn progress(&self) -> Progress {
         let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
+        let unshot: Power = self.unshot_powers().iter().sum();
         Progress {
-            shots: self.shots,
-            meshing_shots: self.meshing_shots,
+            shots: self.course.shots,
+            meshing_shots: self.course.meshing_shots,
             elements: self.mesh.elements.len() - inner,
             vertices: self.mesh.vertices.len(),
-            rays: self.rays,
+            rays: self.course.rays,
             emitted: self.emitted() * self.square_metres,
             unshot: unshot * self.square_metres,
-            elapsed: self.started.elapsed(),
+            elapsed: self.elapsed(),
         }
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.spent + self.started.elapsed()
     }
 }
 
-/// The patch with the most unshot power; the first of equals.
+/// What stands behind each triangle of the scene's [`occluders`].
+fn backing(scene: &Scene, mesh: &Mesh) -> Vec<Backing> {
+    let mut backing = Vec::new();
+    for (number, surface) in (0..).zip(&scene.surfaces) {
+        let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
+        let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
+        let side = Backing {
+            normal: vector_area(&corners).normalize_or(DVec3::Z),
+            sides: surface.sides,
+            surface: number,
+        };
+        backing.extend(std::iter::repeat_n(side, corners.len() - 2));
+    }
+    backing
+}
+
+/// The largest power; the first of equals.
 fn select(powers: &[Power]) -> usize {
     let mut best = 0;
     for (patch, power) in powers.iter().enumerate() {

@@ -1,12 +1,20 @@
 //! One source evaluated at many vertices.
 
-use super::state::Light;
+use super::light::{Light, Sign};
 use crate::form_factor::{Gather, Receiver, Sampler, Scratch, Source};
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
 
 /// Vertices that are evaluated together: enough to fill packets on every level of the source, few enough to share out.
 const BLOCK: usize = 32;
+
+/// A source as it is sampled, and whether it adds light or takes some away.
+#[derive(Clone, Copy)]
+pub(super) struct Beam<'a> {
+    pub sampler: &'a Sampler<'a>,
+    pub source: &'a Source,
+    pub sign: Sign,
+}
 
 /// Evaluates `source` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
 /// blocks depend on the list alone and no result on another.
@@ -33,12 +41,11 @@ pub(super) fn evaluate(
     )
 }
 
-/// Evaluates `source` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
+/// Evaluates `beam` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
 pub(super) fn shoot_at(
     mesh: &Mesh,
     light: &Light,
-    sampler: &Sampler,
-    source: &Source,
+    beam: Beam,
     vertices: &[u32],
     arrived: &mut [Gather],
 ) -> u64 {
@@ -46,8 +53,9 @@ pub(super) fn shoot_at(
         .iter()
         .map(|v| receiver_at(mesh, light, *v))
         .collect();
-    let (gathers, rays) = evaluate(sampler, source, &points);
-    for (vertex, gather) in vertices.iter().zip(gathers) {
+    let (gathers, rays) = evaluate(beam.sampler, beam.source, &points);
+    for (vertex, mut gather) in vertices.iter().zip(gathers) {
+        gather.irradiance *= beam.sign.factor();
         arrived[*vertex as usize] = gather;
     }
     rays

@@ -1,63 +1,82 @@
 //! The shooting patch as the form factors want it: unshot radiosity on a pyramid of cells.
 
+use super::light::{Light, Sign};
 use super::options::{Options, Shooting};
-use super::state::Light;
+use super::run::Solver;
 use crate::form_factor::{Source, SourceThresholds};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
+impl Solver<'_> {
+    /// The source that shoots all that a patch has of one sign in `light`.
+    pub(super) fn source_of(
+        &self,
+        light: &Light,
+        shooter: (usize, Sign),
+        thresholds: &SourceThresholds,
+    ) -> Source {
+        let cells = cells_of(&self.mesh, light, shooter, &self.options, thresholds);
+        source_from(&self.mesh, shooter.0, &cells)
+    }
+}
+
+/// A patch as a source with the unshot radiosity of [`cells_of`].
+pub(super) fn source_from(mesh: &Mesh, patch: usize, cells: &[Spectrum]) -> Source {
+    let of = &mesh.patches[patch];
+    let levels = cells.len().ilog2() / 2;
+    Source::new(of.corners(), of.normal, levels, cells)
+}
+
 /// A triangle or parallelogram of coordinates on a patch; a triangle repeats its first corner.
 type Quad = [[f64; 2]; 4];
 
-/// The source that shoots all that `patch` has unshot. Its total power is exactly that of the interpolant, buried parts
-/// included: rays find out that nothing leaves those.
-pub(super) fn source_of(
+/// What `patch` shoots of one sign: unshot radiosity by cell of the deepest level of its [`Source`]. The total power is exactly that
+/// of the interpolant, buried parts included: rays find out that nothing leaves those.
+pub(super) fn cells_of(
     mesh: &Mesh,
     light: &Light,
-    patch: usize,
+    (patch, sign): (usize, Sign),
     options: &Options,
     thresholds: &SourceThresholds,
-) -> Source {
+) -> Vec<Spectrum> {
     let of = &mesh.patches[patch];
-    let full =
-        |v: &u32| light.unshot_radiosity(mesh, *v).as_dvec3() * mesh.full_weights[*v as usize];
+    let radiosity = |v: u32| light.unshot_radiosity(mesh, v, sign);
+    let full = |v: &u32| radiosity(*v).as_dvec3() * mesh.full_weights[*v as usize];
     let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
     let peak = of
         .vertices
         .iter()
-        .map(|v| light.unshot_radiosity(mesh, *v).max_element())
+        .map(|v| radiosity(*v).max_element())
         .fold(0.0, f32::max);
     // No form factor exceeds 1, so a source this dim is never split where thresholds do not follow the local light.
     let unit = thresholds.scale.reference;
     let fixed = !thresholds.raw && thresholds.scale.local_share == 0.0;
     let dim = fixed && f64::from(peak) <= unit * thresholds.difference.min(thresholds.estimate);
     let levels = if dim { 1 } else { options.source_levels() };
-    let constant = options.shooting == Shooting::Mean
-        || of
-            .vertices
-            .iter()
-            .all(|v| light.unshot[*v as usize] == Spectrum::ZERO);
-    let finest = if constant {
-        vec![mean.as_vec3(); 1 << (2 * levels)]
-    } else {
-        let mut cells = interpolated_cells(mesh, light, patch, levels);
-        let shot: Power = weighted_mean(mesh, patch, levels, &cells);
-        let correction = (mean / shot.max(Power::splat(f64::MIN_POSITIVE))).as_vec3();
-        cells.iter_mut().for_each(|cell| *cell *= correction);
-        cells
-    };
-    Source::new(of.corners(), of.normal, levels, &finest)
+    if options.shooting == Shooting::Mean || light.is_own(mesh, patch, sign) {
+        return vec![mean.as_vec3(); 1 << (2 * levels)];
+    }
+    let mut cells = interpolated_cells(mesh, patch, levels, &radiosity);
+    let shot: Power = weighted_mean(mesh, patch, levels, &cells);
+    let correction = (mean / shot.max(Power::splat(f64::MIN_POSITIVE))).as_vec3();
+    cells.iter_mut().for_each(|cell| *cell *= correction);
+    cells
 }
 
 /// Mean unshot radiosity of each cell of the deepest level, in the pyramid's order.
-fn interpolated_cells(mesh: &Mesh, light: &Light, patch: usize, levels: u32) -> Vec<Spectrum> {
+fn interpolated_cells(
+    mesh: &Mesh,
+    patch: usize,
+    levels: u32,
+    radiosity: &(impl Fn(u32) -> Spectrum + Sync),
+) -> Vec<Spectrum> {
     let triangle = mesh.patches[patch].is_triangle();
     let cells = subdivide(vec![root(triangle)], triangle, levels);
     cells
         .par_iter()
         .with_min_len(64)
-        .map(|cell| cell_mean(mesh, light, patch, cell, 2))
+        .map(|cell| cell_mean(mesh, patch, cell, radiosity, 2))
         .collect()
 }
 
@@ -103,7 +122,13 @@ fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
 }
 
 /// The interpolant at the cell's centre; where elements are finer than the cell, the mean over its parts.
-fn cell_mean(mesh: &Mesh, light: &Light, patch: usize, cell: &Quad, finer: u32) -> Spectrum {
+fn cell_mean(
+    mesh: &Mesh,
+    patch: usize,
+    cell: &Quad,
+    radiosity: &impl Fn(u32) -> Spectrum,
+    finer: u32,
+) -> Spectrum {
     let triangle = mesh.patches[patch].is_triangle();
     let count = if triangle { 3.0 } else { 4.0 };
     let corners = &cell[..count as usize];
@@ -113,12 +138,12 @@ fn cell_mean(mesh: &Mesh, light: &Light, patch: usize, cell: &Quad, finer: u32) 
     if finer > 0 && mesh.unit_side(leaf) < 0.9 * side {
         return parts(cell, triangle)
             .iter()
-            .map(|part| cell_mean(mesh, light, patch, part, finer - 1))
+            .map(|part| cell_mean(mesh, patch, part, radiosity, finer - 1))
             .sum::<Spectrum>()
             * 0.25;
     }
     let point = mesh.patches[patch].position_at(u, v);
-    mesh.interpolated(leaf, point, |v| light.unshot_radiosity(mesh, v))
+    mesh.interpolated(leaf, point, radiosity)
 }
 
 /// Mean of the cells, weighted by their areas.

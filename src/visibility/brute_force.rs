@@ -67,6 +67,7 @@ impl Visibility for BruteForce {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             isa: "portable".to_owned(),
             packet_width: 1,
+            bytes: size_of_val(self.triangles.as_slice()) as u64,
         }
     }
 

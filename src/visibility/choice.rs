@@ -83,6 +83,16 @@ pub enum VisibilityError {
     /// More triangles than the engines can number.
     #[error("{0} triangles are more than can be traced (2³¹ - 1)")]
     TooManyTriangles(usize),
+    /// The engine's structure does not fit into the memory that it may take.
+    #[error("tracing {triangles} triangles takes {needed} MiB, where {limit} may be used")]
+    TooLarge {
+        /// Their number.
+        triangles: usize,
+        /// What their structure takes, MiB.
+        needed: u64,
+        /// What it may take, MiB.
+        limit: u64,
+    },
     /// Embree was asked for, but the program was built without it.
     #[error(
         "this program was built without Embree: install Embree 4 or 3.13 and libclang (Debian, \
@@ -96,7 +106,7 @@ pub enum VisibilityError {
         /// What it was to do.
         step: &'static str,
         /// What it answered.
-        reason: &'static str,
+        reason: String,
     },
 }
 
@@ -108,16 +118,38 @@ pub fn build(
     triangles: &Triangles,
     threads: usize,
 ) -> Result<Box<dyn Visibility>, VisibilityError> {
+    build_within(choice, triangles, threads, None)
+}
+
+/// The same in at most `memory` bytes for the engine's own structures; more is an error.
+pub fn build_within(
+    choice: EngineChoice,
+    triangles: &Triangles,
+    threads: usize,
+    memory: Option<u64>,
+) -> Result<Box<dyn Visibility>, VisibilityError> {
     triangles.validate()?;
     match choice {
-        EngineChoice::Auto if !embree_available(threads) => build_obvhs(triangles),
-        EngineChoice::Auto | EngineChoice::Embree => build_embree(triangles, threads),
-        EngineChoice::Obvhs => build_obvhs(triangles),
+        EngineChoice::Auto if !embree_available(threads) => build_obvhs(triangles, memory),
+        EngineChoice::Auto | EngineChoice::Embree => build_embree(triangles, threads, memory),
+        EngineChoice::Obvhs => build_obvhs(triangles, memory),
         EngineChoice::BruteForce => Ok(Box::new(BruteForce::new(triangles)?)),
     }
 }
 
-fn build_obvhs(triangles: &Triangles) -> Result<Box<dyn Visibility>, VisibilityError> {
+fn build_obvhs(
+    triangles: &Triangles,
+    memory: Option<u64>,
+) -> Result<Box<dyn Visibility>, VisibilityError> {
+    let count = triangles.indices.len();
+    let needed = Obvhs::bytes_to_build(count);
+    if let Some(limit) = memory.filter(|limit| needed > *limit) {
+        return Err(VisibilityError::TooLarge {
+            triangles: count,
+            needed: needed >> 20,
+            limit: limit >> 20,
+        });
+    }
     Ok(Box::new(Obvhs::new(triangles)?))
 }
 
@@ -130,8 +162,9 @@ fn embree_available(threads: usize) -> bool {
 fn build_embree(
     triangles: &Triangles,
     threads: usize,
+    memory: Option<u64>,
 ) -> Result<Box<dyn Visibility>, VisibilityError> {
-    Ok(Box::new(super::Embree::new(triangles, threads)?))
+    Ok(Box::new(super::Embree::new(triangles, threads, memory)?))
 }
 
 #[cfg(not(embree))]
@@ -140,6 +173,10 @@ fn embree_available(_threads: usize) -> bool {
 }
 
 #[cfg(not(embree))]
-fn build_embree(_: &Triangles, _: usize) -> Result<Box<dyn Visibility>, VisibilityError> {
+fn build_embree(
+    _: &Triangles,
+    _: usize,
+    _: Option<u64>,
+) -> Result<Box<dyn Visibility>, VisibilityError> {
     Err(VisibilityError::EmbreeNotBuilt)
 }

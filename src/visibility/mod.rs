@@ -18,7 +18,7 @@ mod triangles;
 
 pub use brute_force::BruteForce;
 pub use bvh::Obvhs;
-pub use choice::{EngineChoice, UnknownEngine, VisibilityError, build};
+pub use choice::{EngineChoice, UnknownEngine, VisibilityError, build, build_within};
 #[cfg(embree)]
 pub use embree::Embree;
 pub use triangles::Triangles;
@@ -140,6 +140,8 @@ pub struct EngineInfo {
     pub isa: String,
     /// Rays traced together.
     pub packet_width: u32,
+    /// Memory that the engine holds.
+    pub bytes: u64,
 }
 
 /// Answers visibility queries about one fixed set of triangles; shared between threads.

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 /// The functions that are used; their types come along. The header's `inline` helpers cannot be
 /// bound (they have no symbol): the shim stands in for them.
 const FUNCTIONS: &str = "rtc(NewDevice|ReleaseDevice|GetDeviceProperty|GetDeviceError\
+     |SetDeviceErrorFunction|SetDeviceMemoryMonitorFunction\
      |NewScene|ReleaseScene|SetSceneFlags|SetSceneBuildQuality|CommitScene\
      |NewGeometry|ReleaseGeometry|SetNewGeometryBuffer|CommitGeometry|AttachGeometry)|shim_.*";
 /// Constants without a function that mentions them.

@@ -170,7 +170,7 @@ fn the_matrix_and_the_progressive_solver_agree() {
     let settings = Settings {
         options: Preset::Standard.options(),
         engine: EngineChoice::Obvhs,
-        threads: 0,
+        ..Settings::default()
     };
     let solution = solve(&scene, &settings, &mut Silent).expect("can be solved");
     // Power received by each surface: the mean irradiance of its zones, against the solver's integral over its mesh.

@@ -37,6 +37,7 @@ impl Visibility for EveryTriangle {
             version: String::new(),
             isa: String::new(),
             packet_width: 1,
+            bytes: 0,
         }
     }
 

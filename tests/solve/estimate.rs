@@ -3,9 +3,9 @@
 use super::common::reference::{Deviation, table};
 use super::{bundled, by_preset, furnace, solved};
 use radiosity::scene::Scene;
-use radiosity::solution::Prober;
-use radiosity::solver::{Audit, Options, Preset, Silent};
-use radiosity::{Settings, solve_to_error};
+use radiosity::solution::{Prober, Solution};
+use radiosity::solver::{Audit, Changes, Options, Preset, Silent};
+use radiosity::{Settings, Target, solve};
 
 fn audit(scene: &Scene, options: Options) -> Audit {
     let report = solved(scene, options).report;
@@ -70,15 +70,20 @@ fn elements_that_are_said_to_be_off_are() {
     }
 }
 
+fn towards(n_rms: f64, fixed: Changes) -> Solution {
+    let settings = Settings {
+        target: Some(Target { n_rms, fixed }),
+        ..Settings::default()
+    };
+    solve(&bundled("secondary"), &settings, &mut Silent).expect("can be solved")
+}
+
 #[test]
 fn a_target_is_reached() {
-    let scene = bundled("secondary");
     let samples = table("secondary_irradiance.csv");
     for target in [0.04, 0.01] {
-        let settings = Settings::default();
-        let solution =
-            solve_to_error(&scene, &settings, target, &|o| o, &mut Silent).expect("can be solved");
-        let report = solution.report.target.expect("was asked for");
+        let solution = towards(target, Changes::new());
+        let report = solution.report.target.as_ref().expect("was asked for");
         assert!(report.reached, "{report:?}");
         let error = Deviation::of(&solution, &samples).n_rms;
         assert!(error <= 1.5 * target, "{error} for {target}");
@@ -87,18 +92,8 @@ fn a_target_is_reached() {
 
 #[test]
 fn a_target_out_of_reach_is_said_to_be() {
-    let limits = |options: Options| Options {
-        max_shots: Some(1),
-        ..options
-    };
-    let solution = solve_to_error(
-        &bundled("secondary"),
-        &Settings::default(),
-        0.001,
-        &limits,
-        &mut Silent,
-    )
-    .expect("can be solved");
+    let one_shot = Changes::from_iter([("max_shots".to_owned(), 1.into())]);
+    let solution = towards(0.001, one_shot);
     assert!(!solution.report.target.expect("was asked for").reached);
 }
 

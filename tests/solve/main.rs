@@ -12,6 +12,7 @@ mod exact_floor;
 mod furnace;
 mod path_traced;
 mod places;
+mod resume;
 mod small_objects;
 mod stopping;
 mod threads;
@@ -19,7 +20,7 @@ mod variants;
 
 use common::scene_folder;
 use radiosity::scene::Scene;
-use radiosity::solution::Solution;
+use radiosity::solution::{Seconds, Solution};
 use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
@@ -66,8 +67,23 @@ fn solved_by(scene: &Scene, options: Options, engine: EngineChoice, threads: usi
         options,
         engine,
         threads,
+        ..Settings::default()
     };
     solve(scene, &settings, &mut Silent).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The solution file without what may differ: times.
+fn bits(mut solution: Solution) -> Vec<u8> {
+    solution.report.seconds = Seconds::default();
+    file(&solution)
+}
+
+fn file(solution: &Solution) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    solution
+        .write(&mut bytes)
+        .expect("memory can be written to");
+    bytes
 }
 
 fn draft() -> Options {

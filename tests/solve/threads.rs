@@ -1,21 +1,14 @@
 //! The same bits for any number of threads.
 
-use super::{bundled, draft, engines, solved_by};
+use super::{bits, bundled, draft, engines, solved_by};
 use radiosity::scene::Scene;
-use radiosity::solution::Seconds;
 use radiosity::visibility::EngineChoice;
 
-/// The solution file without what may differ: times, and the number of threads itself.
 fn bytes(scene: &Scene, engine: EngineChoice, threads: usize) -> Vec<u8> {
     let mut solution = solved_by(scene, draft(), engine, threads);
     assert_eq!(solution.report.threads, threads);
     solution.report.threads = 0;
-    solution.report.seconds = Seconds::default();
-    let mut bytes = Vec::new();
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    bytes
+    bits(solution)
 }
 
 #[test]

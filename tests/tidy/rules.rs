@@ -86,6 +86,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
             "threads",
             "visibility",
             "mesh",
+            "radiometry",
             "solver",
             "solution",
         ],
@@ -127,7 +128,15 @@ const CLI: &[&str] = &[
 ];
 
 /// Crates that are the language we speak rather than a choice of one room: vectors, threads, derives, a hasher.
-const EVERYWHERE: [&str; 6] = ["glam", "rayon", "rstar", "rustc_hash", "serde", "thiserror"];
+const EVERYWHERE: [&str; 7] = [
+    "glam",
+    "rayon",
+    "rstar",
+    "rustc_hash",
+    "serde",
+    "serde_json",
+    "thiserror",
+];
 
 fn imports(files: &[File]) -> Vec<String> {
     let mut broken = Vec::new();

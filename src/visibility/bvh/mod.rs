@@ -21,6 +21,9 @@ use tree::Tree;
 /// Version of obvhs in `Cargo.toml`; the crate does not tell it.
 const OBVHS_VERSION: &str = "0.4";
 
+/// By triangle: boxes, nodes and indices of obvhs, then our corners and pairs.
+const BUILD_BYTES: u64 = 400;
+
 /// A tree over the triangles, traversed by whole fans.
 #[derive(Debug)]
 pub struct Obvhs {
@@ -40,6 +43,13 @@ impl Obvhs {
     }
 }
 
+impl Obvhs {
+    /// Memory that building a tree over so many triangles takes at most: obvhs' own structures beside ours.
+    pub const fn bytes_to_build(triangles: usize) -> u64 {
+        triangles as u64 * BUILD_BYTES
+    }
+}
+
 impl Visibility for Obvhs {
     fn info(&self) -> EngineInfo {
         EngineInfo {
@@ -47,6 +57,7 @@ impl Visibility for Obvhs {
             version: OBVHS_VERSION.to_owned(),
             isa: self.isa.name().to_owned(),
             packet_width: MAX_FAN as u32,
+            bytes: self.tree.bytes(),
         }
     }
 

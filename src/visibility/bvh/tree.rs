@@ -61,6 +61,12 @@ impl Node {
 }
 
 impl Tree {
+    /// Memory that it holds.
+    pub fn bytes(&self) -> u64 {
+        let (pairs, corners) = (size_of::<Pair>(), size_of::<[Vec3; 3]>() + size_of::<u32>());
+        (self.pairs.len() * pairs + self.corners.len() * corners) as u64
+    }
+
     /// Builds the tree over valid triangles.
     pub fn new(triangles: &Triangles) -> Self {
         let corners: Vec<_> = (0..triangles.indices.len())

@@ -1,5 +1,6 @@
 //! The library handle: what it can do, and what went wrong.
 
+use super::watch::Watch;
 use crate::visibility::VisibilityError;
 use embree4_sys as sys;
 use std::ffi::CString;
@@ -37,6 +38,8 @@ impl PacketWidth {
 #[derive(Debug)]
 pub struct Device {
     raw: NonNull<sys::RTCDeviceTy>,
+    /// In a box, where Embree can find it again.
+    watch: Box<Watch>,
 }
 
 // SAFETY: a device is reference-counted and thread-safe by Embree's documentation ("API functions of
@@ -47,27 +50,43 @@ unsafe impl Send for Device {}
 unsafe impl Sync for Device {}
 
 impl Device {
-    /// Opens a device that builds with at most `threads` threads (0: all there are).
-    pub fn new(threads: usize) -> Result<Self, VisibilityError> {
-        let config = match threads {
-            0 => String::new(),
-            n => format!("threads={n}"),
-        };
-        let config = CString::new(config).expect("no NUL in a number");
+    /// Opens a device that builds with at most `threads` threads (0: all there are) and holds at most `memory` bytes.
+    pub fn new(threads: usize, memory: Option<u64>) -> Result<Self, VisibilityError> {
+        match threads {
+            0 => Self::open("", memory),
+            n => Self::open(&format!("threads={n}"), memory),
+        }
+    }
+
+    /// Opens a device with Embree's own configuration string.
+    pub(super) fn open(config: &str, memory: Option<u64>) -> Result<Self, VisibilityError> {
+        let step = "open a device";
+        let config = CString::new(config).map_err(|_| VisibilityError::Embree {
+            step,
+            reason: "its configuration holds a NUL".into(),
+        })?;
         // SAFETY: the null device names the slot of this thread for errors without a device; the
         // string ends in NUL and is copied by the callee.
         let raw = unsafe {
             sys::rtcGetDeviceError(ptr::null_mut());
             sys::rtcNewDevice(config.as_ptr())
         };
-        NonNull::new(raw).map(|raw| Self { raw }).ok_or_else(|| {
+        let raw = NonNull::new(raw).ok_or_else(|| {
             // SAFETY: as above.
             let code = unsafe { sys::rtcGetDeviceError(ptr::null_mut()) };
-            VisibilityError::Embree {
-                step: "open a device",
-                reason: reason(code),
-            }
-        })
+            let reason = reason(code).into();
+            VisibilityError::Embree { step, reason }
+        })?;
+        let watch = Box::new(Watch::new(memory));
+        let device = Self { raw, watch };
+        // SAFETY: the device is valid; the box keeps the watch in place until `drop` has released the device.
+        unsafe { device.watch.register(device.raw()) };
+        Ok(device)
+    }
+
+    /// Bytes that it holds.
+    pub fn used(&self) -> u64 {
+        self.watch.used()
     }
 
     /// The handle, valid as long as `self`.
@@ -83,14 +102,19 @@ impl Device {
     ) -> Result<T, VisibilityError> {
         // SAFETY: the handle is valid; reading the slot empties it.
         unsafe { sys::rtcGetDeviceError(self.raw()) };
+        self.watch.take_message();
         let value = calls();
         // SAFETY: as above.
         match unsafe { sys::rtcGetDeviceError(self.raw()) } {
             sys::RTCError::RTC_ERROR_NONE => Ok(value),
-            code => Err(VisibilityError::Embree {
-                step,
-                reason: reason(code),
-            }),
+            code => {
+                let message = self.watch.take_message();
+                let reason = message.map_or_else(
+                    || reason(code).to_owned(),
+                    |message| format!("{} ({message})", reason(code)),
+                );
+                Err(VisibilityError::Embree { step, reason })
+            }
         }
     }
 

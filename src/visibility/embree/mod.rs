@@ -1,6 +1,6 @@
 //! Intel Embree behind a safe face.
 //!
-//! `device` opens the library and translates its errors, `scene` builds the acceleration structure as
+//! `device` opens the library and translates its errors, `watch` hears what it calls back about, `scene` builds the acceleration structure as
 //! a typestate (`Scene`, then `CommittedScene`), `packet` fills packets of rays and traces them. These
 //! files and `sys/` hold the only unsafe code that talks to C. What Embree must not be handed (a NaN
 //! aborts some builds of it, an index out of range is read) is refused or masked before.
@@ -8,6 +8,7 @@
 mod device;
 mod packet;
 mod scene;
+mod watch;
 
 use super::{EngineInfo, Fans, Hit, Ray, Triangles, Visibility, VisibilityError};
 use device::{Device, PacketWidth};
@@ -21,11 +22,15 @@ pub struct Embree {
 }
 
 impl Embree {
-    /// Builds Embree's structure over `triangles` with at most `threads` threads (0: all there are).
-    /// Blocks; to be called outside of rayon's pool, because the threads are Embree's own.
-    pub fn new(triangles: &Triangles, threads: usize) -> Result<Self, VisibilityError> {
+    /// Builds Embree's structure over `triangles` with at most `threads` threads (0: all there are) and, if `memory` is given, in
+    /// no more than so many bytes. Blocks; to be called outside of rayon's pool, because the threads are Embree's own.
+    pub fn new(
+        triangles: &Triangles,
+        threads: usize,
+        memory: Option<u64>,
+    ) -> Result<Self, VisibilityError> {
         triangles.validate()?;
-        let device = Device::new(threads)?;
+        let device = Device::new(threads, memory)?;
         let width = device.packet_width();
         let mut scene = Scene::new(device)?;
         scene.add(triangles)?;
@@ -37,7 +42,7 @@ impl Embree {
 
     /// Whether the library can be used on this machine.
     pub fn is_available(threads: usize) -> bool {
-        Device::new(threads).is_ok()
+        Device::new(threads, None).is_ok()
     }
 }
 
@@ -48,6 +53,7 @@ impl Visibility for Embree {
             version: self.scene.device().version(),
             isa: self.width.isa().to_owned(),
             packet_width: self.width as u32,
+            bytes: self.scene.device().used(),
         }
     }
 

@@ -38,7 +38,7 @@ impl Scene {
         let raw = device.step(step, || unsafe { sys::rtcNewScene(device.raw()) })?;
         let raw = NonNull::new(raw).ok_or(VisibilityError::Embree {
             step,
-            reason: "it gave no handle",
+            reason: "it gave no handle".into(),
         })?;
         let handle = Handle { raw, device };
         // SAFETY: the scene is valid and not committed.
@@ -124,7 +124,7 @@ impl<'a> Geometry<'a> {
         let raw = device.step(step, || unsafe { sys::rtcNewGeometry(device.raw(), kind) })?;
         let raw = NonNull::new(raw).ok_or(VisibilityError::Embree {
             step,
-            reason: "it gave no handle",
+            reason: "it gave no handle".into(),
         })?;
         Ok(Self { raw, device })
     }
@@ -148,7 +148,7 @@ impl<'a> Geometry<'a> {
         })?;
         let buffer = NonNull::new(buffer.cast::<[T; 3]>()).ok_or(VisibilityError::Embree {
             step,
-            reason: "out of memory",
+            reason: "out of memory".into(),
         })?;
         for (i, item) in items.take(count).enumerate() {
             // SAFETY: the buffer has room for `count` items of this size, is aligned to 16 bytes,

@@ -1,0 +1,91 @@
+//! `radiosity resume`.
+
+use super::CliError;
+use super::error::Code;
+use super::flags::SolveFlags;
+use super::progress::catch_interrupts;
+use super::session::{CHECKPOINT, Session};
+use super::solve::{How, SOLUTION, engine_of, prepare, warn, warn_of_another_engine};
+use crate::scene::Scene;
+use crate::solution::Solution;
+use crate::{Run, Settings, Target};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of a solve: goes on from its checkpoint if there is one, else from its solution
+    folder: PathBuf,
+    /// The scene with other emitters, and the same in all else: only the difference is shot
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Folder for the results [default: the same]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    how: How,
+    #[command(flatten)]
+    flags: SolveFlags,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
+    let started = Instant::now();
+    let solution = Solution::read(&latest(&arguments.folder)?)?;
+    let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
+    let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
+    prepare(output)?;
+    catch_interrupts();
+    let before = solution.report.clone();
+    let settings = settings(&solution, arguments)?;
+    let mut run = Run::resume(solution, settings)?;
+    if let Some(scene) = scene {
+        warn(&scene);
+        run.relight(scene)?;
+        run.report_mut().scene_file = arguments.scene.clone();
+    }
+    let now = run.report_mut();
+    now.seconds.load += started.elapsed().as_secs_f64();
+    if now.engine != before.engine {
+        warn_of_another_engine(&before, now);
+    }
+    let session = Session {
+        output,
+        how: &arguments.how,
+        started,
+        known_warnings: before.warnings.len(),
+    };
+    session.complete(run)
+}
+
+/// The checkpoint, or the solution where there is none.
+fn latest(folder: &Path) -> Result<PathBuf, CliError> {
+    let found = [CHECKPOINT, SOLUTION].map(|name| folder.join(name));
+    found.into_iter().find(|path| path.is_file()).ok_or_else(|| {
+        CliError::Input(format!(
+            "{} holds neither {CHECKPOINT} nor {SOLUTION}; expected the folder of a `radiosity solve`",
+            folder.display()
+        ))
+    })
+}
+
+/// The solve's own settings, but for what the flags say.
+fn settings(solution: &Solution, arguments: &Arguments) -> Result<Settings, CliError> {
+    let (report, flags) = (&solution.report, &arguments.flags);
+    let known = report.target.as_ref().map(|target| {
+        let mut fixed = target.fixed.clone();
+        fixed.extend(flags.changes()?);
+        let n_rms = target.n_rms;
+        Ok::<_, CliError>(Target { n_rms, fixed })
+    });
+    let engine = match arguments.how.engine {
+        Some(engine) => engine,
+        None => engine_of(report)?,
+    };
+    Ok(Settings {
+        options: flags.over(report.options.clone())?,
+        target: flags.target()?.or(known.transpose()?),
+        engine,
+        threads: arguments.how.threads,
+    })
+}

@@ -1,0 +1,105 @@
+//! A run from its start, or where it was left, to its written results.
+
+use super::CliError;
+use super::error::Code;
+use super::progress::{Bar, is_interrupted};
+use super::solve::{How, summary, write};
+use crate::Run;
+use crate::output::write_atomically;
+use crate::solution::Solution;
+use crate::solver::{MeshingEnd, StopReason};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The state of a run that has not ended; `radiosity resume` reads it.
+pub(super) const CHECKPOINT: &str = "checkpoint.rad";
+
+/// Checkpoints take at most this share of the time: where writing one takes longer, they become fewer.
+const SHARE: f64 = 0.05;
+
+/// Where the results go, and how they are come by.
+pub(super) struct Session<'a> {
+    pub output: &'a Path,
+    pub how: &'a How,
+    pub started: Instant,
+    /// Warnings of the report that have been shown.
+    pub known_warnings: usize,
+}
+
+impl Session<'_> {
+    /// Goes on to the end, or until it is interrupted, and writes what there is.
+    pub fn complete(&self, mut run: Run) -> Result<Code, CliError> {
+        let mut bar = Bar::new(run.solution().report.options.tolerance);
+        if let Some(interval) = self.how.checkpoint {
+            let took = self.save(run.solution())?;
+            bar.due = Some(next(interval, took));
+        }
+        while run.go(&mut bar)? == StopReason::Interrupted && !is_interrupted() {
+            bar.due = self.how.checkpoint.map(|interval| {
+                // A solve is worth more than its checkpoint: what cannot be saved now may be saved later.
+                let took = self.save(run.solution()).unwrap_or_else(|error| {
+                    eprintln!("warning: {error}");
+                    interval
+                });
+                next(interval, took)
+            });
+        }
+        bar.clear();
+        let is_left = run.set_aside().is_some();
+        if let Some(state) = run.set_aside() {
+            self.save(state)?;
+        }
+        let mut solution = run.finish();
+        self.warn(&solution);
+        write(&mut solution, self.output, self.how)?;
+        if !is_left {
+            // What is in the solution now, or belongs to a run before this one.
+            let _ = std::fs::remove_file(self.output.join(CHECKPOINT));
+        }
+        let seconds = self.started.elapsed().as_secs_f64();
+        print!("{}", summary(&solution, seconds));
+        match solution.report.stop_reason {
+            StopReason::Interrupted => Ok(Code::Interrupted),
+            _ => Ok(Code::Success),
+        }
+    }
+
+    /// Writes the state; says how long that took.
+    fn save(&self, state: &Solution) -> Result<Duration, CliError> {
+        let started = Instant::now();
+        write_atomically(&self.output.join(CHECKPOINT), |out| state.write(out))?;
+        Ok(started.elapsed())
+    }
+
+    /// What came to light in the solve.
+    fn warn(&self, solution: &Solution) {
+        let report = &solution.report;
+        for warning in report.warnings.iter().skip(self.known_warnings) {
+            eprintln!("warning: {warning}");
+        }
+        if let Some(end) = report.meshing_ended {
+            let limit = match end {
+                MeshingEnd::MaxElements => "--max-elements",
+                MeshingEnd::MemoryLimit => "--memory-limit",
+            };
+            eprintln!(
+                "warning: {limit} ended the refinement after {} shots, at {} elements",
+                report.meshing_shots, report.elements
+            );
+        }
+        let missed = report.target.as_ref().filter(|t| !t.reached);
+        if let (Some(target), true) = (missed, report.stop_reason != StopReason::NoEmitter) {
+            let plural = if target.rounds == 1 { "" } else { "s" };
+            eprintln!(
+                "warning: the error of {}% was not reached in {} solve{plural}",
+                100.0 * target.n_rms,
+                target.rounds
+            );
+        }
+    }
+}
+
+/// When the next checkpoint is due, if the last one took so long.
+fn next(interval: Duration, took: Duration) -> Instant {
+    Instant::now() + interval.max(took.div_f64(SHARE))
+}

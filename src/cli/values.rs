@@ -1,0 +1,89 @@
+//! The values of flags: numbers within bounds, names, errors, durations, sizes.
+
+use serde::de::DeserializeOwned;
+use std::time::Duration;
+
+/// A value by the name under which reports show it.
+pub(super) fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
+    serde_json::from_value(name.into()).map_err(|e| e.to_string())
+}
+
+/// A fraction, or a percentage with its sign.
+pub(super) fn error(text: &str) -> Result<f64, String> {
+    let expected = "an error such as 1% or 0.01";
+    let allowed = |x: f64| x > 0.0;
+    match text.strip_suffix('%') {
+        Some(percent) => number(percent.trim_end(), allowed, expected).map(|x| x / 100.0),
+        None => number(text, allowed, expected),
+    }
+}
+
+/// Seconds, or a number with the unit s, m or h.
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
+    let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let seconds = with_unit(text, &units, "a duration such as 90, 90s, 15m or 2h")?;
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+/// Bytes, or a number with a unit.
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
+    let units = [
+        ("KiB", 1024.0),
+        ("MiB", 1048576.0),
+        ("GiB", 1073741824.0),
+        ("KB", 1e3),
+        ("MB", 1e6),
+        ("GB", 1e9),
+    ];
+    let bytes = with_unit(text, &units, "a size such as 500MB or 2GiB")?;
+    Ok(bytes as u64)
+}
+
+fn with_unit(text: &str, units: &[(&str, f64)], expected: &str) -> Result<f64, String> {
+    let split = |(unit, scale): &(&str, f64)| {
+        let (number, end) = text.split_at_checked(text.len().checked_sub(unit.len())?)?;
+        end.eq_ignore_ascii_case(unit).then_some((number, *scale))
+    };
+    let (digits, scale) = units.iter().find_map(split).unwrap_or((text, 1.0));
+    number(digits.trim_end(), |x| x > 0.0 && x < 1e12, expected).map(|x| x * scale)
+}
+
+fn number(text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("expected {expected}"))?;
+    if value.is_finite() && allowed(value) {
+        Ok(value)
+    } else {
+        Err(format!("expected {expected}"))
+    }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    number(text, |v| v > 0.0 && v < 1e9, "a positive number")
+}
+
+pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+    number(text, |v| v >= 0.0, "a number, 0 or more")
+}
+
+pub(super) fn fraction(text: &str) -> Result<f64, String> {
+    number(text, |v| (0.0..=1.0).contains(&v), "a number from 0 to 1")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_and_sizes_have_units() {
+        let seconds = |text| duration(text).map(|d| d.as_secs_f64());
+        assert_eq!(seconds("90"), Ok(90.0));
+        assert_eq!(seconds("1.5m"), Ok(90.0));
+        assert_eq!(seconds("2 h"), Ok(7200.0));
+        assert_eq!(bytes("2GiB"), Ok(2 << 30));
+        assert_eq!(bytes("500mb"), Ok(500_000_000));
+        assert_eq!(bytes("4096"), Ok(4096));
+        for wrong in ["", "s", "-1s", "0", "1d", "inf", "1 e", "é"] {
+            assert!(duration(wrong).is_err() && bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}

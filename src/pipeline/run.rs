@@ -1,0 +1,254 @@
+//! A solve that can be left and taken up again.
+
+use super::report::{blank, take_in};
+use super::{Settings, SolveError};
+use crate::mesh::Mesh;
+use crate::radiometry::{Spectrum, exitance_from_radiance};
+use crate::scene::Scene;
+use crate::solution::{Continuation, Report, Solution};
+use crate::solver::{Light, Observer, Options, Outcome, Solver, StopReason, occluders};
+use crate::threads::pool;
+use crate::visibility::{Visibility, build_within};
+use rayon::ThreadPool;
+use std::time::{Duration, Instant};
+
+/// A solve in progress, or one that has ended. An observer that stops it does not end it: [`Run::go`] goes on where it was, in this
+/// process or, from the solution's file, in another, and comes to the same bits.
+pub struct Run {
+    /// There, but while the solver works on it.
+    solution: Option<Solution>,
+    /// The result of the round before, while a stricter one is under way.
+    complete: Option<Solution>,
+    visibility: Box<dyn Visibility>,
+    pool: ThreadPool,
+    time_limit: Option<Duration>,
+    /// What counts against the time limit.
+    spent: Duration,
+}
+
+impl Run {
+    /// Meshes the scene and builds the engine; nothing is shot yet.
+    pub fn new(scene: Scene, settings: Settings) -> Result<Self, SolveError> {
+        let started = Instant::now();
+        let target = settings.target.as_ref().map(|target| target.report());
+        let options = match &target {
+            Some(target) => target.options()?,
+            None => settings.options.clone(),
+        };
+        let pool = pool(settings.threads)?;
+        let threads = pool.current_num_threads();
+        let mesh = pool.install(|| Mesh::new(&scene, options.limits));
+        let triangles = occluders(&scene, &mesh);
+        let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        let time_limit = options.time_limit;
+        let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
+        report.target = target;
+        let mut run = Self {
+            solution: None,
+            complete: None,
+            visibility,
+            pool,
+            time_limit,
+            spent: Duration::ZERO,
+        };
+        run.begin(scene, mesh, report);
+        run.report_mut().seconds.build = started.elapsed().as_secs_f64();
+        Ok(run)
+    }
+
+    /// Takes up a solve from its solution, with settings that may have become stricter.
+    pub fn resume(mut solution: Solution, settings: Settings) -> Result<Self, SolveError> {
+        let started = Instant::now();
+        let Some(continuation) = &mut solution.continuation else {
+            return Err(SolveError::NotKept);
+        };
+        let report = &mut solution.report;
+        let mut options = settings.options;
+        if let Some(target) = &settings.target {
+            let fresh = target.report();
+            let same = report
+                .target
+                .as_ref()
+                .filter(|known| known.n_rms == fresh.n_rms && known.fixed == fresh.fixed);
+            let target = same.cloned().unwrap_or(fresh);
+            options = target.options()?;
+            report.target = Some(target);
+        }
+        if is_stricter(&options, &report.options) {
+            continuation.course.reopen();
+        }
+        let pool = pool(settings.threads)?;
+        let threads = pool.current_num_threads();
+        let triangles = occluders(&continuation.scene, &solution.mesh);
+        let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        let time_limit = options.time_limit;
+        let now = blank(
+            &continuation.scene,
+            &solution.mesh,
+            visibility.as_ref(),
+            options,
+            threads,
+        );
+        (report.engine, report.threads) = (now.engine, now.threads);
+        report.options = now.options;
+        report.seconds.build += started.elapsed().as_secs_f64();
+        Ok(Self {
+            solution: Some(solution),
+            complete: None,
+            visibility,
+            pool,
+            time_limit,
+            spent: Duration::ZERO,
+        })
+    }
+
+    /// Goes on until there is a reason to stop.
+    pub fn go(&mut self, observer: &mut dyn Observer) -> Result<StopReason, SolveError> {
+        loop {
+            let reason = self.advance(observer);
+            if reason != StopReason::Converged || !self.needs_another_round() {
+                return Ok(reason);
+            }
+            self.next_round()?;
+        }
+    }
+
+    /// The solution so far.
+    pub fn solution(&self) -> &Solution {
+        self.solution.as_ref().expect(KEPT)
+    }
+
+    /// The report, for what the caller knows: files, times.
+    pub fn report_mut(&mut self) -> &mut Report {
+        &mut self.solution.as_mut().expect(KEPT).report
+    }
+
+    /// The state of a round that has not ended and that [`Run::finish`] drops for the result of the one before.
+    pub fn set_aside(&self) -> Option<&Solution> {
+        let last = self.solution();
+        let ended = last.report.stop_reason == StopReason::Converged;
+        (self.complete.is_some() && !ended).then_some(last)
+    }
+
+    /// The solution. Of several rounds on the way to a target, the last that is complete.
+    pub fn finish(self) -> Solution {
+        let last = self.solution.expect(KEPT);
+        match self.complete {
+            Some(mut complete) if last.report.stop_reason != StopReason::Converged => {
+                complete.report.stop_reason = last.report.stop_reason;
+                complete
+            }
+            _ => last,
+        }
+    }
+
+    /// Replaces what the surfaces emit by what they emit in `scene`, which must be the same in all else. What is more or less
+    /// than before is shot as positive or negative light.
+    pub fn relight(&mut self, scene: Scene) -> Result<(), SolveError> {
+        let solution = self.solution.as_mut().expect(KEPT);
+        let Some(known) = &mut solution.continuation else {
+            return Err(SolveError::NotKept);
+        };
+        known
+            .scene
+            .differs_but_in_emission(&scene)
+            .map_err(SolveError::OtherScene)?;
+        for (number, patch) in solution.mesh.patches.iter_mut().enumerate() {
+            let surface = &scene.surfaces[patch.surface as usize];
+            let material = &scene.materials[surface.material as usize];
+            if !patch.back {
+                let exitance = exitance_from_radiance(material.emitted_radiance);
+                solution.light.exitance_unshot[number] += exitance - patch.exitance;
+                patch.exitance = exitance;
+            }
+        }
+        if solution
+            .mesh
+            .patches
+            .iter()
+            .all(|p| p.exitance == Spectrum::ZERO)
+        {
+            solution.light = Light::new(&solution.mesh);
+        }
+        known.scene = scene;
+        known.course.reopen();
+        Ok(())
+    }
+
+    /// Puts a solve with nothing shot in place.
+    fn begin(&mut self, scene: Scene, mesh: Mesh, report: Report) {
+        let options = report.options.clone();
+        let visibility = self.visibility.as_ref();
+        let outcome = self
+            .pool
+            .install(|| Solver::new(&scene, mesh, visibility, options).leave());
+        self.keep(scene, report, outcome);
+    }
+
+    fn keep(&mut self, scene: Scene, mut report: Report, outcome: Outcome) {
+        let (mesh, light, course) = take_in(&mut report, outcome);
+        self.solution = Some(Solution {
+            report,
+            cameras: scene.cameras.clone(),
+            metres_per_unit: scene.metres_per_unit,
+            mesh,
+            light,
+            continuation: Some(Continuation { scene, course }),
+        });
+    }
+
+    fn advance(&mut self, observer: &mut dyn Observer) -> StopReason {
+        let started = Instant::now();
+        let solution = self.solution.take().expect(KEPT);
+        let Continuation { scene, course } = solution.continuation.expect(KEPT);
+        let mut report = solution.report;
+        let mut options = report.options.clone();
+        options.time_limit = self.time_limit;
+        let state = (solution.mesh, solution.light, course);
+        let (visibility, spent) = (self.visibility.as_ref(), self.spent);
+        let outcome = self
+            .pool
+            .install(|| Solver::resume(&scene, state, visibility, options, spent).run(observer));
+        self.spent = outcome.elapsed;
+        report.seconds.solve += started.elapsed().as_secs_f64();
+        let reason = outcome.stop_reason;
+        self.keep(scene, report, outcome);
+        reason
+    }
+
+    fn needs_another_round(&mut self) -> bool {
+        let report = &mut self.solution.as_mut().expect(KEPT).report;
+        let estimate = report.audit.map_or(0.0, |audit| audit.n_rms);
+        let target = report.target.as_mut();
+        target.is_some_and(|target| target.needs_another(estimate))
+    }
+
+    /// Begins anew with the options of the next round.
+    fn next_round(&mut self) -> Result<(), SolveError> {
+        let complete = self.solution.take().expect(KEPT);
+        let scene = complete.continuation.as_ref().expect(KEPT).scene.clone();
+        let mut report = complete.report.clone();
+        if let Some(target) = &report.target {
+            report.options = target.options()?;
+        }
+        let limits = report.options.limits;
+        let mesh = self.pool.install(|| Mesh::new(&scene, limits));
+        self.begin(scene, mesh, report);
+        self.complete = Some(complete);
+        Ok(())
+    }
+}
+
+/// Why there is always a solution, and one that can go on.
+const KEPT: &str = "a run keeps its solution and what it takes to go on";
+
+/// Whether there is more to do than for options under which all was done.
+fn is_stricter(now: &Options, before: &Options) -> bool {
+    let method = |of: &Options| Options {
+        max_shots: None,
+        time_limit: None,
+        audit_points: 0,
+        ..of.clone()
+    };
+    method(now) != method(before)
+}

@@ -1,0 +1,127 @@
+//! How far a solve has come: with the mesh and its light, all that it takes to go on as if it had never been interrupted.
+
+use super::audit::Span;
+use super::feelers::Feeler;
+use super::light::{Light, Sign};
+use super::source::source_from;
+use crate::form_factor::{DEEPEST, Gather, Source};
+use crate::mesh::Mesh;
+use crate::radiometry::{Power, Spectrum};
+use serde::{Deserialize, Serialize};
+
+/// How far a solve has come, besides the mesh and the light on it.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Course {
+    /// Shots that are complete.
+    pub shots: u64,
+    /// Shots that tested the mesh.
+    pub meshing_shots: u64,
+    /// Occlusion rays traced.
+    pub rays: u64,
+    /// Why the mesh is not refined any further, if a limit ended it.
+    pub meshing_ended: Option<MeshingEnd>,
+    /// Power that has left the scene, W times the square of the frame's scale.
+    pub(super) escaped: Power,
+    /// See [`Audit::sent_sum`](super::Audit::sent_sum).
+    pub(super) sent_sum: Option<Span>,
+    pub(super) stage: Stage,
+}
+
+/// The limit that ended refinement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeshingEnd {
+    /// [`Options::max_elements`](super::Options::max_elements).
+    MaxElements,
+    /// [`Options::memory_limit`](super::Options::memory_limit).
+    MemoryLimit,
+}
+
+/// What is to be done next.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) enum Stage {
+    /// A shot.
+    #[default]
+    Shooting,
+    /// A pass of refinement after a shot.
+    Refining(Shot),
+    /// The light of one more patch, gathered on the finished mesh.
+    Gathering(Gathering),
+    /// Nothing.
+    Finished,
+}
+
+/// A shot that has arrived at the vertices there were, while the mesh is refined for it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Shot {
+    pub shooter: u32,
+    pub sign: Sign,
+    /// As a fraction of the emitted power.
+    pub power: f64,
+    /// Unshot radiosity by cell of the deepest level, as it was before the shot.
+    pub cells: Vec<Spectrum>,
+    /// Elements to be tested.
+    pub candidates: Vec<u32>,
+    pub feelers: Vec<Feeler>,
+    /// What the shot gave to each vertex so far.
+    pub arrived: Vec<Gather>,
+    /// Made of `cells` when it is asked for.
+    #[serde(skip)]
+    pub source: Option<Source>,
+}
+
+impl Shot {
+    /// The source that shoots.
+    pub fn source(&mut self, mesh: &Mesh) -> Source {
+        let made = self.source.take();
+        made.unwrap_or_else(|| source_from(mesh, self.shooter as usize, &self.cells))
+    }
+}
+
+/// All light gathered once more at every vertex, so far.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Gathering {
+    /// The first patch whose light is not in yet.
+    pub next: u32,
+    /// By how much the light is multiplied for what is unshot.
+    pub ambient: Spectrum,
+    pub irradiance: Vec<Spectrum>,
+    pub escaped: Power,
+    /// What arrived and what escaped over what was sent, and what was sent, of each strong patch.
+    pub sums: Vec<(f64, f64)>,
+    /// The light that is gathered; made when it is asked for.
+    #[serde(skip)]
+    pub whole: Option<Light>,
+}
+
+impl Course {
+    /// Goes on with shooting if all was shot: the options have become stricter, or the emitters are others.
+    pub fn reopen(&mut self) {
+        if matches!(self.stage, Stage::Finished | Stage::Gathering(_)) {
+            self.stage = Stage::Shooting;
+        }
+        self.meshing_ended = None;
+    }
+
+    /// Checks a course that was read against the mesh that it belongs to. The error says what does not fit.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), String> {
+        let (patches, elements) = (mesh.patches.len() as u32, mesh.elements.len() as u32);
+        let fits = match &self.stage {
+            Stage::Shooting | Stage::Finished => true,
+            Stage::Refining(shot) => {
+                let levels = 1..=DEEPEST;
+                levels.into_iter().any(|l| shot.cells.len() == 1 << (2 * l))
+                    && shot.shooter < patches
+                    && shot.candidates.iter().all(|e| *e < elements)
+                    && shot.feelers.iter().all(|f| f.patch < patches)
+                    && shot.arrived.len() == mesh.vertices.len()
+            }
+            Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
+        };
+        if fits {
+            Ok(())
+        } else {
+            Err("a state of the solve that does not fit the mesh".into())
+        }
+    }
+}

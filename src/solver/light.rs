@@ -1,0 +1,90 @@
+//! The light on a mesh.
+
+use crate::mesh::Mesh;
+use crate::radiometry::{Power, Spectrum};
+use serde::{Deserialize, Serialize};
+
+/// Irradiance at the vertices, and what of it has not been shot.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Light {
+    /// Irradiance E received so far, W/m², by vertex.
+    pub irradiance: Vec<Spectrum>,
+    /// The part of it whose reflection is unshot, by vertex.
+    pub unshot: Vec<Spectrum>,
+    /// What of a patch's own exitance is unshot, W/m², by patch.
+    pub exitance_unshot: Vec<Spectrum>,
+}
+
+/// Unshot light is positive in a solve from darkness. What is left after gathering, or after an emitter was dimmed, is of either
+/// sign; each is shot by itself, as light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sign {
+    /// Light to be added.
+    Positive,
+    /// Light to be taken away.
+    Negative,
+}
+
+impl Sign {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Positive, Self::Negative];
+
+    /// 1 or -1.
+    pub fn factor(self) -> f32 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+
+    /// The part of a quantity that has this sign, without it.
+    fn part(self, of: Spectrum) -> Spectrum {
+        (of * self.factor()).max(Spectrum::ZERO)
+    }
+}
+
+impl Light {
+    /// Darkness, with everything to be emitted unshot.
+    pub fn new(mesh: &Mesh) -> Self {
+        Self {
+            irradiance: vec![Spectrum::ZERO; mesh.vertices.len()],
+            unshot: vec![Spectrum::ZERO; mesh.vertices.len()],
+            exitance_unshot: mesh.patches.iter().map(|p| p.exitance).collect(),
+        }
+    }
+
+    /// Unshot radiosity ΔB of one sign of a patch at one of its vertices, ≥ 0.
+    pub fn unshot_radiosity(&self, mesh: &Mesh, vertex: u32, sign: Sign) -> Spectrum {
+        let patch = mesh.vertices[vertex as usize].patch as usize;
+        sign.part(self.exitance_unshot[patch])
+            + mesh.patches[patch].reflectance * sign.part(self.unshot[vertex as usize])
+    }
+
+    /// Unshot power of one sign of a patch, in W times the square of the frame's scale, ≥ 0.
+    pub fn unshot_power(&self, mesh: &Mesh, patch: usize, sign: Sign) -> Power {
+        let of = &mesh.patches[patch];
+        let received: Power = of
+            .vertices
+            .iter()
+            .map(|v| sign.part(self.unshot[*v as usize]).as_dvec3() * mesh.weights[*v as usize])
+            .sum();
+        let own = sign.part(self.exitance_unshot[patch]).as_dvec3() * of.area;
+        own + of.reflectance.as_dvec3() * received
+    }
+
+    /// Whether all that a patch has unshot of one sign is its own.
+    pub(super) fn is_own(&self, mesh: &Mesh, patch: usize, sign: Sign) -> bool {
+        let vertices = &mesh.patches[patch].vertices;
+        let unshot = |v: &u32| sign.part(self.unshot[*v as usize]);
+        vertices.iter().all(|v| unshot(v) == Spectrum::ZERO)
+    }
+
+    /// Marks everything of one sign of a patch as shot.
+    pub fn take(&mut self, mesh: &Mesh, patch: usize, sign: Sign) {
+        let take = |unshot: &mut Spectrum| *unshot -= sign.part(*unshot) * sign.factor();
+        take(&mut self.exitance_unshot[patch]);
+        for vertex in &mesh.patches[patch].vertices {
+            take(&mut self.unshot[*vertex as usize]);
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! How much more the mesh may grow: the limits on elements and on memory.
+
+use super::course::MeshingEnd;
+use super::run::Solver;
+
+/// Memory that a leaf takes in all, at the peak of a run that writes everything there is to write: its vertices and parents, the
+/// light, what a shot keeps, the triangles of the results. Held by a test.
+const BYTES_PER_LEAF: u64 = 2500;
+
+/// What the process takes before there is a mesh.
+const BYTES_BEFORE: u64 = 48 << 20;
+
+/// Leaves that go with each split: three more, and as many again for the balance.
+const LEAVES_PER_SPLIT: usize = 6;
+
+impl Solver<'_> {
+    /// Elements that may be split in the next pass.
+    pub(super) fn room(&self) -> usize {
+        let most = self.most_leaves().map_or(usize::MAX, |(most, _)| most);
+        most.saturating_sub(self.mesh.leaves().count()) / LEAVES_PER_SPLIT
+    }
+
+    /// The limit that leaves no room, if one does.
+    pub(super) fn meshing_end(&self) -> Option<MeshingEnd> {
+        let (_, end) = self.most_leaves()?;
+        (self.room() == 0).then_some(end)
+    }
+
+    /// The tighter of the limits, in leaves.
+    fn most_leaves(&self) -> Option<(usize, MeshingEnd)> {
+        let elements = self.options.max_elements;
+        let memory = self.options.memory_limit.map(|limit| {
+            let before = BYTES_BEFORE + self.visibility.info().bytes;
+            (limit.saturating_sub(before) / BYTES_PER_LEAF) as usize
+        });
+        let elements = elements.map(|most| (most, MeshingEnd::MaxElements));
+        let memory = memory.map(|most| (most, MeshingEnd::MemoryLimit));
+        elements
+            .into_iter()
+            .chain(memory)
+            .min_by_key(|(most, _)| *most)
+    }
+}

@@ -1,0 +1,259 @@
+//! A solve that is left and taken up again: the same bits, no work twice, other emitters.
+
+use super::common::reference::{Deviation, Sample, table};
+use super::{bits, bundled, draft, engines, file, solved, solved_by};
+use glam::DVec3;
+use radiosity::radiometry::Spectrum;
+use radiosity::scene::Scene;
+use radiosity::solution::{Prober, Solution};
+use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
+use radiosity::visibility::EngineChoice;
+use radiosity::{Run, Settings, SolveError};
+
+/// Lets some batches of work be done, then stops.
+struct Batches(usize);
+
+impl Observer for Batches {
+    fn progress(&mut self, _: &Progress) -> Control {
+        if self.0 == 0 {
+            return Control::Stop;
+        }
+        self.0 -= 1;
+        Control::Continue
+    }
+}
+
+fn settings(options: Options, engine: EngineChoice, threads: usize) -> Settings {
+    Settings {
+        options,
+        engine,
+        threads,
+        ..Settings::default()
+    }
+}
+
+/// Solves in sessions of so many batches; between them there is nothing but the file. Returns the number of sessions as well.
+fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> (Solution, usize) {
+    let mut run = Run::new(scene.clone(), how.clone()).expect("can be solved");
+    for session in 1.. {
+        let reason = run.go(&mut Batches(batches)).expect("can be solved");
+        if reason != StopReason::Interrupted {
+            return (run.finish(), session);
+        }
+        let bytes = file(&run.finish());
+        let solution = Solution::decode(&bytes).expect("was just written");
+        assert!(file(&solution) == bytes, "a file is read as it was written");
+        run = Run::resume(solution, how.clone()).expect("can be resumed");
+    }
+    unreachable!("sessions go on until the solve ends")
+}
+
+#[test]
+fn a_solve_in_sessions_ends_with_the_same_bits() {
+    for (name, batches) in [("geometry", 1), ("cornell-box", 7), ("emission", 40)] {
+        let scene = bundled(name);
+        for engine in engines() {
+            let whole = bits(solved_by(&scene, draft(), engine, 1));
+            let (solution, sessions) = in_sessions(&scene, &settings(draft(), engine, 1), batches);
+            assert!(sessions > 4, "{name}: {sessions}");
+            assert!(bits(solution) == whole, "{name} by {engine}");
+        }
+    }
+}
+
+#[test]
+fn what_was_left_on_one_thread_goes_on_with_seven() {
+    let scene = bundled("geometry");
+    let engine = EngineChoice::Obvhs;
+    let whole = solved_by(&scene, draft(), engine, 7);
+    let mut run = Run::new(scene, settings(draft(), engine, 1)).expect("can be solved");
+    run.go(&mut Batches(20)).expect("can be solved");
+    let mut run = Run::resume(run.finish(), settings(draft(), engine, 7)).expect("can be resumed");
+    run.go(&mut Silent).expect("can be solved");
+    assert!(bits(run.finish()) == bits(whole));
+}
+
+#[test]
+fn a_target_in_sessions_is_reached_by_the_same_rounds() {
+    let how = Settings {
+        target: Some(radiosity::Target {
+            n_rms: 0.03,
+            fixed: Default::default(),
+        }),
+        ..Settings::default()
+    };
+    let scene = bundled("secondary");
+    let whole = radiosity::solve(&scene, &how, &mut Silent).expect("can be solved");
+    // One stop, in the last round or the only one.
+    let mut run = Run::new(scene, how.clone()).expect("can be solved");
+    run.go(&mut Batches(30)).expect("can be solved");
+    let state = run.set_aside().unwrap_or(run.solution());
+    let left = Solution::decode(&file(state)).expect("was just written");
+    let mut run = Run::resume(left, how).expect("can be resumed");
+    run.go(&mut Silent).expect("can be solved");
+    assert!(bits(run.finish()) == bits(whole));
+}
+
+/// What an interrupted solve leaves adds up: light that is under way has not been forgotten.
+#[test]
+fn the_ledger_closes_wherever_a_solve_is_left() {
+    let scene = bundled("cornell-box");
+    let mut run = Run::new(scene, settings(draft(), EngineChoice::Auto, 0)).expect("can be solved");
+    let mut within_a_shot = 0;
+    let mut shots = 0;
+    while run.go(&mut Batches(3)).expect("can be solved") == StopReason::Interrupted {
+        let report = &run.solution().report;
+        let power = &report.power;
+        assert!(power.residual.abs() < 0.05 * power.emitted, "{power:?}");
+        within_a_shot += usize::from(report.shots == shots);
+        shots = report.shots;
+    }
+    assert!(
+        within_a_shot > 3,
+        "some were left between passes of refinement"
+    );
+}
+
+/// Irradiance at points of the Cornell box, to hold other solutions against.
+fn samples(of: &Solution) -> Vec<Sample> {
+    let prober = Prober::new(of);
+    let sample = |known: Sample| Sample {
+        irradiance: prober
+            .probe(known.point, known.normal)
+            .expect("lies on a surface")
+            .irradiance
+            .as_dvec3(),
+        standard_error: DVec3::ZERO,
+        ..known
+    };
+    let points = table("cornell_irradiance.csv").into_iter();
+    points.map(sample).collect()
+}
+
+#[test]
+fn a_finished_solve_goes_on_to_a_tighter_tolerance() {
+    let scene = bundled("cornell-box");
+    let loose = Options {
+        tolerance: 0.2,
+        regather: false,
+        ..Preset::Draft.options()
+    };
+    let tight = Options {
+        tolerance: 0.01,
+        ..loose.clone()
+    };
+    let first = solved(&scene, loose);
+    let shots = first.report.shots;
+    let mut run =
+        Run::resume(first, settings(tight.clone(), EngineChoice::Auto, 0)).expect("can be resumed");
+    assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
+    let resumed = run.finish();
+    let at_once = solved(&scene, tight);
+    assert!(resumed.report.shots > shots);
+    assert!(
+        bits(resumed) == bits(at_once),
+        "shots do not depend on the tolerance"
+    );
+}
+
+#[test]
+fn a_finished_solve_with_the_same_options_has_nothing_to_do() {
+    let first = solved(&bundled("geometry"), draft());
+    let known = bits(first.clone());
+    let mut run =
+        Run::resume(first, settings(draft(), EngineChoice::Auto, 0)).expect("can be resumed");
+    assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
+    assert!(bits(run.finish()) == known);
+}
+
+/// The Cornell box; what its short box emits is told.
+fn with_a_glowing_box(radiance: f32) -> Scene {
+    let mut scene = bundled("cornell-box");
+    let mut material = scene.materials[scene.surfaces[8].material as usize].clone();
+    material.name = "glowing".into();
+    material.emitted_radiance = Spectrum::splat(radiance);
+    scene.materials.push(material);
+    let last = scene.materials.len() as u32 - 1;
+    for surface in &mut scene.surfaces[8..13] {
+        surface.material = last;
+    }
+    scene
+}
+
+#[test]
+fn other_emitters_are_shot_as_the_light_that_they_give_more_or_less() {
+    let standard = Preset::Standard.options();
+    for (before, after) in [(0.0, 0.4), (0.4, 0.1), (0.4, 0.0)] {
+        let anew = samples(&solved(&with_a_glowing_box(after), standard.clone()));
+        let solution = solved(&with_a_glowing_box(before), draft());
+        let mut run = Run::resume(solution, settings(draft(), EngineChoice::Auto, 0))
+            .expect("can be resumed");
+        run.relight(with_a_glowing_box(after))
+            .expect("only the light is another");
+        assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
+        let relit = run.finish();
+        let deviation = Deviation::of(&relit, &anew);
+        // The error of a draft of this scene.
+        assert!(deviation.n_rms < 0.04, "{before} to {after}: {deviation:?}");
+        let power = &relit.report.power;
+        assert!(power.residual.abs() < 0.03 * power.emitted, "{power:?}");
+        assert!(power.unshot.abs() < 0.02 * power.emitted, "{power:?}");
+    }
+}
+
+#[test]
+fn with_all_emitters_off_it_is_dark() {
+    let mut scene = bundled("cornell-box");
+    let mut run = Run::resume(
+        solved(&scene, draft()),
+        settings(draft(), EngineChoice::Auto, 0),
+    )
+    .expect("can be resumed");
+    for material in &mut scene.materials {
+        material.emitted_radiance = Spectrum::ZERO;
+    }
+    run.relight(scene).expect("only the light is another");
+    assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::NoEmitter));
+    let light = run.finish().light;
+    assert!(light.irradiance.iter().all(|e| *e == Spectrum::ZERO));
+}
+
+#[test]
+fn another_scene_is_refused() {
+    let scene = bundled("cornell-box");
+    let solution = solved(&scene, draft());
+    let refusal = |change: &dyn Fn(&mut Scene)| {
+        let mut other = scene.clone();
+        change(&mut other);
+        let how = settings(draft(), EngineChoice::Auto, 0);
+        let mut run = Run::resume(solution.clone(), how).expect("can be resumed");
+        let error = run.relight(other).expect_err("is another scene");
+        assert!(matches!(error, SolveError::OtherScene(_)), "{error}");
+        error.to_string()
+    };
+    let moved = refusal(&|scene| scene.vertices[0].x += 1.0);
+    assert!(moved.contains("corners"), "{moved}");
+    let less = refusal(&|scene| scene.surfaces.truncate(3));
+    assert!(less.contains("3 surfaces"), "{less}");
+    let brighter = refusal(&|scene| scene.materials[0].reflectance *= 0.5);
+    assert!(brighter.contains("reflectance"), "{brighter}");
+}
+
+#[test]
+fn a_file_of_the_first_format_is_shown_but_not_continued() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/format-1");
+    let solution = Solution::read(&path.join("solution.rad")).expect("is still read");
+    assert_eq!((solution.report.shots, solution.report.vertices), (2, 164));
+    assert_eq!(solution.report.options.limits.max_depth, 2);
+    // The middle of the floor, 1 m below a lamp of 1 m² and π W/m²: C-14's form factor of parallel squares, at a point.
+    let middle = Prober::new(&solution).probe(DVec3::new(0.5, 0.0, 0.5), DVec3::Y);
+    let irradiance = f64::from(middle.expect("lies on the floor").irradiance.x);
+    let leg = 0.5 / 1.25f64.sqrt();
+    let factor = 4.0 / std::f64::consts::PI * leg * leg.atan();
+    assert!(
+        (irradiance / (std::f64::consts::PI * factor) - 1.0).abs() < 0.02,
+        "{irradiance}"
+    );
+    let error = Run::resume(solution, Settings::default()).err();
+    assert!(matches!(error, Some(SolveError::NotKept)));
+}
