@@ -8,7 +8,7 @@ use super::pictures::draw;
 use super::progress::catch_interrupts;
 use super::session::Session;
 use super::values::duration;
-use crate::output::{SummaryRow, summary_table, write_atomically, write_ply};
+use crate::output::{SummaryRow, remove_abandoned, summary_table, write_atomically, write_ply};
 use crate::radiometry::radiance_from_radiosity;
 use crate::render::{RenderOptions, Tone};
 use crate::scene::Scene;
@@ -138,6 +138,9 @@ pub(super) fn warn(scene: &Scene) {
     }
 }
 
+/// Bytes that a folder must have room for before a solve begins.
+const PROBE: usize = 1 << 20;
+
 /// Makes the folder and finds out before the solve whether it can be written to.
 pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     let refuse = |error: std::io::Error| {
@@ -145,8 +148,10 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     };
     std::fs::create_dir_all(folder).map_err(refuse)?;
     let probe = folder.join(".radiosity-writable");
-    std::fs::write(&probe, []).map_err(refuse)?;
-    std::fs::remove_file(&probe).map_err(refuse)
+    std::fs::write(&probe, vec![0; PROBE]).map_err(refuse)?;
+    std::fs::remove_file(&probe).map_err(refuse)?;
+    remove_abandoned(folder);
+    Ok(())
 }
 
 /// Writes all results.

@@ -45,6 +45,31 @@ fn fill_and_rename(
     draft.publish(path)
 }
 
+/// Removes the temporary files that killed processes have left in `folder`; those of living ones stay.
+pub fn remove_abandoned(folder: &Path) {
+    let names = fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in names.map(|entry| entry.path()) {
+        if process_of(&path).is_some_and(|id| id != process::id() && !is_alive(id)) {
+            // Somebody else's to look after, if it cannot be removed.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// The process that writes a temporary file, from its name.
+fn process_of(path: &Path) -> Option<u32> {
+    let name = path.file_name()?.to_str()?.strip_prefix('.')?;
+    let mut parts = name.strip_suffix(".part")?.rsplit('.');
+    let (_number, process) = (parts.next()?.parse::<u64>().ok()?, parts.next()?);
+    process.parse().ok()
+}
+
+/// Whether there is such a process; where the system does not tell, there may be.
+fn is_alive(process: u32) -> bool {
+    let processes = Path::new("/proc");
+    !processes.join("self").exists() || processes.join(process.to_string()).exists()
+}
+
 /// The temporary file; removed when dropped unless it was published.
 struct Draft {
     path: Option<PathBuf>,

@@ -10,7 +10,7 @@ mod ply;
 mod png;
 mod table;
 
-pub use atomic::{WriteError, write_atomically};
+pub use atomic::{WriteError, remove_abandoned, write_atomically};
 pub use exr::write_exr;
 pub use matrix::{
     Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,

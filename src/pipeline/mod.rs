@@ -42,6 +42,18 @@ pub enum SolveError {
     /// The scene is not the one that was solved, but for what its surfaces emit.
     #[error("a solve can go on with other emitters, not with another scene: {0}")]
     OtherScene(String),
+    /// Already the coarsest mesh exceeds the memory limit.
+    #[error(
+        "{elements} elements before any refinement need about {needed} MiB, where {limit} may be used"
+    )]
+    TooLarge {
+        /// Leaves of the coarsest mesh.
+        elements: usize,
+        /// What the run would take, MiB.
+        needed: u64,
+        /// What it may take, MiB.
+        limit: u64,
+    },
     /// An option that a target fixes is none.
     #[error("{0}")]
     Option(String),

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::radiometry::{Spectrum, exitance_from_radiance};
 use crate::scene::Scene;
 use crate::solution::{Continuation, Report, Solution};
-use crate::solver::{Light, Observer, Options, Outcome, Solver, StopReason, occluders};
+use crate::solver::{Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders};
 use crate::threads::pool;
 use crate::visibility::{Visibility, build_within};
 use rayon::ThreadPool;
@@ -40,6 +40,7 @@ impl Run {
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
         let triangles = occluders(&scene, &mesh);
         let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        check_memory(&mesh, visibility.as_ref(), options.memory_limit)?;
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
         report.target = target;
@@ -236,6 +237,24 @@ impl Run {
         self.begin(scene, mesh, report);
         self.complete = Some(complete);
         Ok(())
+    }
+}
+
+/// Refuses a mesh that exceeds the limit as it is.
+fn check_memory(
+    mesh: &Mesh,
+    visibility: &dyn Visibility,
+    limit: Option<u64>,
+) -> Result<(), SolveError> {
+    let elements = mesh.leaves().count();
+    let needed = memory_for(elements, visibility.info().bytes);
+    match limit.filter(|limit| needed > *limit) {
+        None => Ok(()),
+        Some(limit) => Err(SolveError::TooLarge {
+            elements,
+            needed: needed >> 20,
+            limit: limit >> 20,
+        }),
     }
 }
 

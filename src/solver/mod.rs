@@ -29,4 +29,5 @@ pub use light::{Light, Sign};
 pub use observer::{Control, Observer, Progress, Silent};
 pub use options::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 pub use outcome::{Outcome, StopReason};
+pub use room::memory_for;
 pub use run::{Solver, occluders};

@@ -6,6 +6,7 @@ mod matrices;
 mod probing;
 mod refused;
 mod rendering;
+mod resuming;
 mod solving;
 
 use std::path::{Path, PathBuf};

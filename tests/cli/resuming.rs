@@ -1,0 +1,256 @@
+//! Checkpoints, `resume`, `--from` and limits.
+
+use super::{Run, command, draft, folder, names, radiosity, scene, text};
+use radiosity::solution::{Seconds, Solution};
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+const DRAFT: [&str; 3] = ["--preset", "draft", "--no-pictures"];
+
+fn run(arguments: &[&[&str]]) -> Run {
+    radiosity(&arguments.concat())
+}
+
+/// The solution in a folder, without what may differ from run to run.
+fn bits(folder: &Path) -> Vec<u8> {
+    let path = folder.join("solution.rad");
+    let mut solution = Solution::read(&path).unwrap_or_else(|error| panic!("{error}"));
+    solution.report.seconds = Seconds::default();
+    let mut bytes = Vec::new();
+    solution
+        .write(&mut bytes)
+        .expect("memory can be written to");
+    bytes
+}
+
+/// Starts a command and kills it after a while, if it has not ended by then. No signal that could be caught.
+fn killed(arguments: &[&[&str]], after: Duration) -> bool {
+    let mut child = command()
+        .args(arguments.concat())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("can be started");
+    sleep(after);
+    let ended = child.try_wait().expect("can be asked").is_some();
+    child.kill().expect("can be killed");
+    child.wait().expect("ends");
+    !ended
+}
+
+#[test]
+fn killed_at_any_moment_a_solve_resumes_to_the_same_bits() {
+    let folder = folder();
+    let (whole, pieces) = (folder.path().join("whole"), folder.path().join("pieces"));
+    let cornell = scene("cornell-box");
+    let solve = ["solve", text(&cornell), "-o"];
+    run(&[&solve, &[text(&whole)], &DRAFT]).assert_success();
+
+    let often = ["--no-pictures", "--checkpoint", "0.01"];
+    let first = [&solve[..], &[text(&pieces)], &DRAFT, &often[1..]];
+    let again = [&["resume", text(&pieces)], &often[..]];
+    let has = |name: &str| pieces.join(name).exists();
+    let mut kills = 0;
+    for attempt in 0..200 {
+        // The golden ratio spreads the moments; they come later and later, so that there is an end.
+        let moment = (f64::from(attempt) * 0.618_034).fract();
+        let after = Duration::from_secs_f64(0.02 + 0.3 * moment + 0.01 * f64::from(attempt));
+        let arguments = if has("checkpoint.rad") {
+            &again[..]
+        } else {
+            &first[..]
+        };
+        kills += usize::from(killed(arguments, after));
+        if has("solution.rad") && !has("checkpoint.rad") {
+            break;
+        }
+    }
+    assert!(kills >= 3, "{kills}");
+    assert!(bits(&pieces) == bits(&whole), "after {kills} kills");
+    // What the kills have left half-written is cleared away by whoever comes next.
+    run(&[&solve, &[text(&pieces)], &DRAFT]).assert_success();
+    let expected = ["report.json", "solution.ply", "solution.rad"];
+    assert_eq!(names(&pieces), expected);
+}
+
+#[test]
+fn a_report_repeats_its_solve() {
+    let folder = folder();
+    let [first, second, third] = ["1", "2", "3"].map(|name| folder.path().join(name));
+    let emission = scene("emission");
+    let options = [
+        "--preset",
+        "draft",
+        "--eps-d",
+        "0.3",
+        "--max-shots",
+        "20",
+        "--no-pictures",
+    ];
+    let engine = ["--engine", "obvhs"];
+    run(&[
+        &["solve", text(&emission), "-o", text(&first)],
+        &options,
+        &engine,
+    ])
+    .assert_success();
+    let report = first.join("report.json");
+    let from = ["solve", "--from", text(&report), "--no-pictures", "-o"];
+    run(&[&from, &[text(&second)]]).assert_success();
+    assert!(bits(&second) == bits(&first));
+    let more = run(&[&from, &[text(&third), "--max-shots", "21"]]);
+    more.assert_success();
+    assert!(bits(&third) != bits(&first), "flags have the last word");
+
+    fs::write(&report, "{}").expect("can be written");
+    run(&[&from, &[text(&second)]]).assert_refused(3, &["report.json", "missing field"]);
+    fs::remove_file(&report).expect("is there");
+    run(&[&from, &[text(&second)]]).assert_refused(3, &["cannot read", "report.json"]);
+}
+
+#[test]
+fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
+    let (folder, solved) = draft("cornell-box");
+    let before = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let resumed = run(&[&[
+        "resume",
+        text(&solved),
+        "--tolerance",
+        "0.001",
+        "--no-pictures",
+    ]]);
+    resumed.assert_success();
+    let after = Solution::read(&solved.join("solution.rad")).expect("was written");
+    assert!(after.report.shots > before.report.shots);
+    assert!(after.report.power.unshot.abs() < before.report.power.unshot.abs() + 1e-3);
+    assert_eq!(
+        after.report.options.epsilon_d,
+        before.report.options.epsilon_d
+    );
+
+    // The same box with half the light.
+    let dim = folder.path().join("dim");
+    copy(&scene("cornell-box"), &dim);
+    let settings = fs::read_to_string(dim.join("scene.toml")).expect("is there");
+    let light = &after
+        .continuation
+        .as_ref()
+        .expect("is kept")
+        .scene
+        .materials;
+    let light = light.iter().find(|m| m.emits()).expect("there is a light");
+    let half: Vec<f32> = (light.emitted_radiance * 0.5).to_array().to_vec();
+    let settings = format!(
+        "{settings}\n[material.{}]\nemitted_radiance = {half:?}\n",
+        light.name
+    );
+    fs::write(dim.join("scene.toml"), settings).expect("can be written");
+    let output = folder.path().join("half");
+    let arguments = [
+        "resume",
+        text(&solved),
+        "--scene",
+        text(&dim),
+        "-o",
+        text(&output),
+    ];
+    run(&[&arguments, &["--no-pictures"]]).assert_success();
+    let relit = Solution::read(&output.join("solution.rad")).expect("was written");
+    let ratio = relit.report.power.absorbed / after.report.power.absorbed;
+    assert!((ratio - 0.5).abs() < 0.005, "{ratio}");
+
+    let shadow = scene("shadow");
+    let other = ["resume", text(&solved), "--scene", text(&shadow)];
+    run(&[&other]).assert_refused(3, &["other emitters", "surfaces"]);
+}
+
+/// Copies the files of a folder.
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir(to).expect("can be made");
+    for name in names(from) {
+        fs::copy(from.join(&name), to.join(&name)).expect("can be copied");
+    }
+}
+
+#[test]
+fn what_cannot_be_resumed_is_refused() {
+    let folder = folder();
+    let empty = text(folder.path());
+    run(&[&["resume", empty]]).assert_refused(3, &["neither checkpoint.rad nor solution.rad"]);
+    run(&[&["resume", "no/such/folder"]]).assert_refused(3, &["no/such/folder"]);
+    fs::write(folder.path().join("checkpoint.rad"), "RADIOSOL and more").expect("can be written");
+    run(&[&["resume", empty]]).assert_refused(3, &["checkpoint.rad", "not a solution"]);
+
+    let old = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/format-1");
+    let output = folder.path().join("out");
+    run(&[&["resume", text(&old), "-o", text(&output)]]).assert_refused(3, &["earlier version"]);
+    run(&[
+        &["render", text(&old), "-o", text(&output)],
+        &["--width", "16", "--height", "16"],
+    ])
+    .assert_success();
+}
+
+#[test]
+fn limits_end_the_refinement_and_say_so() {
+    let folder = folder();
+    let cornell = scene("cornell-box");
+    let limited = |limit: &[&str]| {
+        let output = folder.path().join(limit[0].trim_start_matches('-'));
+        let arguments = [
+            "solve",
+            text(&cornell),
+            "-o",
+            text(&output),
+            "--no-pictures",
+        ];
+        let options = ["--engine", "obvhs", "--tolerance", "0.05"];
+        let run = run(&[&arguments, &options, limit]);
+        run.assert_success();
+        let warning = format!("warning: {} ended the refinement", limit[0]);
+        assert!(run.err.contains(&warning), "{}", run.err);
+        let solution = Solution::read(&output.join("solution.rad")).expect("was written");
+        let json = fs::read(output.join("report.json")).expect("was written");
+        let report: serde_json::Value = serde_json::from_slice(&json).expect("is JSON");
+        (solution.report, report["peak_memory"].as_u64())
+    };
+    let (report, _) = limited(&["--max-elements", "8000"]);
+    assert!(
+        (7000..=8100).contains(&report.elements),
+        "{}",
+        report.elements
+    );
+    let limit: u64 = 80 << 20;
+    let (report, peak) = limited(&["--memory-limit", "80MiB"]);
+    assert!(report.elements > 7000, "{}", report.elements);
+    assert!(peak.is_none_or(|peak| peak <= limit), "{peak:?}");
+}
+
+#[test]
+fn a_scene_that_does_not_fit_into_the_memory_limit_is_refused_with_the_cause() {
+    let folder = folder();
+    let path = folder.path().join("many.obj");
+    let mut obj = String::new();
+    for i in 0..40_000 {
+        obj += &format!("v {i} 0 0\nv {i} 0 1\nv {i} 1 0\nf -3 -2 -1\n");
+    }
+    fs::write(&path, obj).expect("can be written");
+    let output = folder.path().join("out");
+    let arguments = [
+        "solve",
+        text(&path),
+        "-o",
+        text(&output),
+        "--memory-limit",
+        "1MiB",
+    ];
+    let obvhs = run(&[&arguments, &["--engine", "obvhs"]]);
+    obvhs.assert_refused(1, &["40000 triangles", "MiB"]);
+    if cfg!(embree) {
+        run(&[&arguments, &["--engine", "embree"]])
+            .assert_refused(1, &["Embree cannot", "out of memory", "1 MiB"]);
+    }
+}
