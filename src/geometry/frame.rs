@@ -42,6 +42,12 @@ impl Frame {
         }
     }
 
+    /// Whether it maps numbers to numbers; one that was read may not.
+    pub fn is_sound(&self) -> bool {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        self.centre.is_finite() && positive(self.scale) && positive(self.extent)
+    }
+
     /// The longest side of the scene's bounding box, in frame units.
     pub fn extent(&self) -> f64 {
         self.extent

@@ -61,6 +61,22 @@ impl Patch {
         }
     }
 
+    /// Whether its parts fit each other; those of one that was read may not.
+    pub(super) fn is_sound(&self) -> bool {
+        let corners = match self.corner_count {
+            3 | 4 => self.corners(),
+            _ => return false,
+        };
+        let made = Self::new(self.surface, self.polygon, corners, self.back);
+        let within = |x: f32| (0.0..=1.0).contains(&x);
+        made.corners == self.corners
+            && made.area == self.area
+            && made.normal == self.normal
+            && self.area > 0.0
+            && self.reflectance.to_array().into_iter().all(within)
+            && self.exitance.is_finite()
+    }
+
     /// Its three or four corners.
     pub fn corners(&self) -> &[DVec3] {
         &self.corners[..usize::from(self.corner_count)]

@@ -1,6 +1,6 @@
 //! A mesh that was read from a file: what it says is checked, what follows from it is computed again.
 
-use super::Mesh;
+use super::{Mesh, UNIT, Vertex};
 
 impl Mesh {
     /// Checks a mesh that was read and restores what is not stored. Errors say what does not fit.
@@ -14,7 +14,9 @@ impl Mesh {
                 Err(format!("{what} out of range"))
             }
         };
+        check(self.frame.is_sound(), "the frame")?;
         for patch in &self.patches {
+            check(patch.is_sound(), "a patch")?;
             check(
                 patch.roots.start <= patch.roots.end && patch.roots.end as usize <= elements,
                 "a root element",
@@ -45,10 +47,12 @@ impl Mesh {
                 "the children of an element",
             )?;
         }
-        check(
-            self.vertices.iter().all(|v| (v.patch as usize) < patches),
-            "the patch of a vertex",
-        )?;
+        let on_a_patch = |v: &Vertex| {
+            (v.patch as usize) < patches
+                && v.lattice.u.max(v.lattice.v) <= UNIT
+                && v.point.is_finite()
+        };
+        check(self.vertices.iter().all(on_a_patch), "a vertex")?;
         check(
             self.buried.len() == vertices,
             "the number of buried vertices",

@@ -142,6 +142,10 @@ impl Solution {
         if light.exitance_unshot.len() != patches {
             return Err("exitance that does not fit the mesh".into());
         }
+        let of_all = [&light.irradiance, &light.unshot, &light.exitance_unshot];
+        if !of_all.into_iter().flatten().all(|e| e.is_finite()) {
+            return Err("light that is no number".into());
+        }
         if let Some(Continuation { scene, course }) = &self.continuation {
             scene.check()?;
             course.check(&self.mesh)?;

@@ -30,7 +30,10 @@ fn memory_that_is_refused_is_an_error_with_its_cause_at_every_limit() {
     for share in 0..10 {
         match Embree::new(&triangles, 1, Some(needed * share / 20)) {
             Err(VisibilityError::Embree { step, reason }) => {
-                assert!(reason.contains("out of memory (more than"), "{step}: {reason}");
+                assert!(
+                    reason.contains("out of memory (more than"),
+                    "{step}: {reason}"
+                );
                 refusals.push(step);
             }
             other => panic!("{share}/20 of the memory: {other:?}"),
@@ -38,7 +41,10 @@ fn memory_that_is_refused_is_an_error_with_its_cause_at_every_limit() {
     }
     assert!(refusals.contains(&"allocate a buffer"), "{refusals:?}");
     assert!(refusals.contains(&"build its structure"), "{refusals:?}");
-    assert!(Embree::new(&triangles, 1, Some(8 * needed)).is_ok(), "{needed}");
+    assert!(
+        Embree::new(&triangles, 1, Some(8 * needed)).is_ok(),
+        "{needed}"
+    );
 }
 
 #[test]
@@ -54,7 +60,12 @@ fn what_the_device_gives_back_is_counted() {
 #[test]
 fn an_instruction_set_that_is_not_there_is_an_error_or_another() {
     // Embree takes what it knows of a configuration, and refuses what it cannot run on.
-    for config in ["isa=avx1024", "threads=1,isa=", "=,=,=", "verbose=0,nonsense=1"] {
+    for config in [
+        "isa=avx1024",
+        "threads=1,isa=",
+        "=,=,=",
+        "verbose=0,nonsense=1",
+    ] {
         match Device::open(config, None) {
             Ok(device) => assert!(!device.version().is_empty()),
             Err(error) => assert!(error.to_string().starts_with("Embree cannot"), "{error}"),
