@@ -77,6 +77,27 @@ pub(super) fn take_in(
     (mesh, light, course)
 }
 
+/// The share of the emitted power on sides that do not radiate from which on it is worth a word.
+const BACKS: f64 = 0.01;
+
+/// How the warning of it begins.
+const BACKS_SAY: &str = "light falls on the backs of surfaces";
+
+/// Warns where much of the light is lost on the wrong side of surfaces.
+pub(super) fn warn_of_backs(report: &mut Report) {
+    report
+        .warnings
+        .retain(|known| !known.starts_with(BACKS_SAY));
+    let share = report.power.onto_backs / report.power.emitted;
+    if share > BACKS {
+        report.warnings.push(format!(
+            "{BACKS_SAY} that radiate from the front only: {:.0}% of the emitted power is lost there. If they should be lit, turn them \
+             round or say sides = \"both\" in the scene.toml",
+            100.0 * share
+        ));
+    }
+}
+
 /// What the reader found suspicious, and what could not be meshed as it should.
 fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let mut warnings = scene.warnings.clone();

@@ -1,6 +1,6 @@
 //! A solve that can be left and taken up again.
 
-use super::report::{blank, take_in};
+use super::report::{blank, take_in, warn_of_backs};
 use super::{Settings, SolveError};
 use crate::mesh::Mesh;
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -134,13 +134,15 @@ impl Run {
     /// The solution. Of several rounds on the way to a target, the last that is complete.
     pub fn finish(self) -> Solution {
         let last = self.solution.expect(KEPT);
-        match self.complete {
+        let mut solution = match self.complete {
             Some(mut complete) if last.report.stop_reason != StopReason::Converged => {
                 complete.report.stop_reason = last.report.stop_reason;
                 complete
             }
             _ => last,
-        }
+        };
+        warn_of_backs(&mut solution.report);
+        solution
     }
 
     /// Replaces what the surfaces emit by what they emit in `scene`, which must be the same in all else. What is more or less

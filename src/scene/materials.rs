@@ -6,6 +6,7 @@ use super::text::{TextFile, quote};
 use super::{Material, SceneError};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 use std::path::Path;
 use toml::Spanned;
 
@@ -180,7 +181,8 @@ fn refuse_unknown_names(
     settings: &Settings,
     library: &Library,
 ) -> Result<(), SceneError> {
-    let known = |name: &String| library.entries.iter().any(|entry| entry.name == *name);
+    let names: FxHashSet<&String> = library.entries.iter().map(|entry| &entry.name).collect();
+    let known = |name: &String| names.contains(name);
     match settings.material.iter().find(|(name, _)| !known(name)) {
         None => Ok(()),
         Some((name, table)) => {

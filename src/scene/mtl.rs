@@ -8,6 +8,7 @@ use super::obj_guard::{CheckedObj, UsedMaterial, rest_of};
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -143,12 +144,14 @@ fn folder_name(folder: &Path) -> String {
 #[derive(Default)]
 struct Scan {
     entries: Vec<Entry>,
+    /// Where each name is in `entries`.
+    index: FxHashMap<String, usize>,
     text: String,
 }
 
 impl Scan {
     fn index_of(&self, name: &str) -> Option<usize> {
-        self.entries.iter().position(|entry| entry.name == name)
+        self.index.get(name).copied()
     }
 
     fn define(&mut self, name: &str, defined: bool) -> usize {
@@ -159,6 +162,7 @@ impl Scan {
             polygons: Tally::default(),
             defined,
         };
+        self.index.insert(name.to_owned(), self.entries.len());
         self.entries.push(entry);
         let _ = writeln!(self.text, "newmtl {name}");
         self.entries.len() - 1

@@ -35,6 +35,7 @@ pub(super) struct CheckedObj {
     current_material: Option<usize>,
     current_group: Option<u32>,
     group_numbers: FxHashMap<String, u32>,
+    material_numbers: FxHashMap<String, usize>,
 }
 
 /// A material that polygons of an OBJ file name.
@@ -210,17 +211,15 @@ impl CheckedObj {
                 "the name of a material".to_owned(),
             ));
         }
-        let known = self
-            .used_materials
-            .iter()
-            .position(|used| used.name == name);
-        self.current_material = known.or_else(|| {
+        let next = self.used_materials.len();
+        let number = *self.material_numbers.entry(name.to_owned()).or_insert(next);
+        if number == next {
             self.used_materials.push(UsedMaterial {
                 name: name.to_owned(),
                 polygons: Tally::default(),
             });
-            Some(self.used_materials.len() - 1)
-        });
+        }
+        self.current_material = Some(number);
         self.face_lines.extend(["usemtl ", name, "\n"]);
         Ok(())
     }

@@ -44,12 +44,21 @@ struct ReportThen {
     seconds: Seconds,
     stop_reason: StopReason,
     reference_irradiance: f64,
-    power: PowerReport<f64>,
-    power_rgb: PowerReport<[f64; 3]>,
+    power: PowerThen<f64>,
+    power_rgb: PowerThen<[f64; 3]>,
     audit: Option<Audit>,
     target: Option<TargetThen>,
     options: OptionsThen,
     warnings: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct PowerThen<T> {
+    emitted: T,
+    absorbed: T,
+    escaped: T,
+    unshot: T,
+    residual: T,
 }
 
 #[derive(Deserialize)]
@@ -131,12 +140,25 @@ impl From<ReportThen> for Report {
             peak_memory: None,
             stop_reason: then.stop_reason,
             reference_irradiance: then.reference_irradiance,
-            power: then.power,
-            power_rgb: then.power_rgb,
+            power: then.power.into(),
+            power_rgb: then.power_rgb.into(),
             audit: then.audit,
             target: then.target.map(TargetReport::from),
             options: then.options.into(),
             warnings: then.warnings,
+        }
+    }
+}
+
+impl<T: Default> From<PowerThen<T>> for PowerReport<T> {
+    fn from(then: PowerThen<T>) -> Self {
+        Self {
+            emitted: then.emitted,
+            absorbed: then.absorbed,
+            escaped: then.escaped,
+            onto_backs: T::default(),
+            unshot: then.unshot,
+            residual: then.residual,
         }
     }
 }

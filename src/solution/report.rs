@@ -106,6 +106,7 @@ pub struct Seconds {
 
 /// Where the power went: emitted = absorbed + escaped + unshot + residual.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(bound(deserialize = "T: Deserialize<'de> + Default"))]
 pub struct PowerReport<T> {
     /// Given by all emitters.
     pub emitted: T,
@@ -113,6 +114,9 @@ pub struct PowerReport<T> {
     pub absorbed: T,
     /// Gone to the open or onto sides that do not radiate, measured by rays of its own.
     pub escaped: T,
+    /// The part of it that ended on sides that do not radiate: on the wrong side, if they were to be lit.
+    #[serde(default)]
+    pub onto_backs: T,
     /// Not yet shot.
     pub unshot: T,
     /// What the other terms leave over: discretisation, and the sampling of `escaped`.
@@ -126,6 +130,7 @@ impl<T> PowerReport<T> {
             emitted: of(ledger.emitted),
             absorbed: of(ledger.absorbed),
             escaped: of(ledger.escaped),
+            onto_backs: of(ledger.onto_backs),
             unshot: of(ledger.unshot),
             residual: of(ledger.residual()),
         }

@@ -1,12 +1,13 @@
 //! How far a solve has come: with the mesh and its light, all that it takes to go on as if it had never been interrupted.
 
 use super::audit::Span;
+use super::escape::Lost;
 use super::feelers::Feeler;
 use super::light::{Light, Sign};
 use super::source::source_from;
 use crate::form_factor::{DEEPEST, Gather, Source};
 use crate::mesh::Mesh;
-use crate::radiometry::{Power, Spectrum};
+use crate::radiometry::Spectrum;
 use serde::{Deserialize, Serialize};
 
 /// How far a solve has come, besides the mesh and the light on it.
@@ -20,8 +21,7 @@ pub struct Course {
     pub rays: u64,
     /// Why the mesh is not refined any further, if a limit ended it.
     pub meshing_ended: Option<MeshingEnd>,
-    /// Power that has left the scene, W times the square of the frame's scale.
-    pub(super) escaped: Power,
+    pub(super) lost: Lost,
     /// See [`Audit::sent_sum`](super::Audit::sent_sum).
     pub(super) sent_sum: Option<Span>,
     pub(super) stage: Stage,
@@ -86,7 +86,7 @@ pub(super) struct Gathering {
     /// By how much the light is multiplied for what is unshot.
     pub ambient: Spectrum,
     pub irradiance: Vec<Spectrum>,
-    pub escaped: Power,
+    pub lost: Lost,
     /// What arrived and what escaped over what was sent, and what was sent, of each strong patch.
     pub sums: Vec<(f64, f64)>,
     /// The light that is gathered; made when it is asked for.

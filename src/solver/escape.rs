@@ -7,7 +7,9 @@ use crate::scene::Sides;
 use crate::visibility::{Hit, Ray, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::{AddAssign, Mul};
 
 /// What stands behind a triangle of the visibility scene.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +28,34 @@ pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &[Backing]) -> bool {
     sides == Sides::Front && normal.dot(ray.direction.as_dvec3()) > 0.0
 }
 
-/// The part of a shot's power that escapes, in W times the square of the frame's scale, estimated with `count` rays.
+/// Power that surfaces do not get, W times the square of the frame's scale.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Lost {
+    /// All that leaves: to the open, and onto sides that do not radiate.
+    pub all: Power,
+    /// The second part of it.
+    pub onto_backs: Power,
+}
+
+impl AddAssign for Lost {
+    fn add_assign(&mut self, other: Self) {
+        self.all += other.all;
+        self.onto_backs += other.onto_backs;
+    }
+}
+
+impl Mul<f64> for Lost {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            all: self.all * factor,
+            onto_backs: self.onto_backs * factor,
+        }
+    }
+}
+
+/// The part of a shot's power that is lost, estimated with `count` rays.
 /// Points that `is_open` denies give nothing: what is buried has received nothing either.
 pub(super) fn escaped(
     source: &Source,
@@ -35,7 +64,7 @@ pub(super) fn escaped(
     is_open: impl Fn(DVec3) -> bool,
     extent: f64,
     (count, seed): (usize, u32),
-) -> Power {
+) -> Lost {
     let draws: Vec<Draw> = draw(source, count, seed)
         .into_iter()
         .filter(|draw| is_open(draw.point))
@@ -46,20 +75,24 @@ pub(super) fn escaped(
             let rays: Vec<Ray> = chunk.iter().map(|d| ray(source, d, extent)).collect();
             let mut hits = Vec::new();
             visibility.nearest(&rays, &mut hits);
-            let lost = |(hit, ray): (&Option<Hit>, &Ray)| {
-                hit.as_ref().is_none_or(|hit| is_dark(hit, ray, backing))
-            };
-            let power =
-                |(draw, is_lost): (&Draw, bool)| if is_lost { draw.power } else { Power::ZERO };
-            chunk
-                .iter()
-                .zip(hits.iter().zip(&rays).map(lost))
-                .map(power)
-                .sum::<Power>()
+            let mut lost = Lost::default();
+            for ((draw, hit), ray) in chunk.iter().zip(&hits).zip(&rays) {
+                let onto_back = hit.as_ref().is_some_and(|hit| is_dark(hit, ray, backing));
+                if onto_back {
+                    lost.onto_backs += draw.power;
+                }
+                if onto_back || hit.is_none() {
+                    lost.all += draw.power;
+                }
+            }
+            lost
         })
         .collect::<Vec<_>>()
         .into_iter()
-        .sum()
+        .fold(Lost::default(), |mut sum, lost| {
+            sum += lost;
+            sum
+        })
 }
 
 /// A point of the source, a direction on the unit square, and the power that goes there.

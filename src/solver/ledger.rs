@@ -1,5 +1,6 @@
 //! Where the power went.
 
+use super::escape::Lost;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
 use crate::solver::{Light, Sign};
@@ -13,6 +14,8 @@ pub struct Ledger {
     pub absorbed: Power,
     /// Gone to the open or onto sides that do not radiate, measured by its own cosine-distributed rays.
     pub escaped: Power,
+    /// The part of it that ended on sides that do not radiate.
+    pub onto_backs: Power,
     /// Not yet shot.
     pub unshot: Power,
 }
@@ -24,9 +27,10 @@ impl Ledger {
     }
 
     /// Takes the balance of a mesh. Areas of the frame become m² through `square_metres`, the area in m² of a frame unit squared.
-    pub(super) fn balance(mesh: &Mesh, light: &Light, escaped: Power, square_metres: f64) -> Self {
+    pub(super) fn balance(mesh: &Mesh, light: &Light, lost: &Lost, square_metres: f64) -> Self {
         let mut ledger = Self {
-            escaped: escaped * square_metres,
+            escaped: lost.all * square_metres,
+            onto_backs: lost.onto_backs * square_metres,
             ..Self::default()
         };
         for (number, patch) in mesh.patches.iter().enumerate() {

@@ -6,6 +6,7 @@
 
 use super::audit::Span;
 use super::course::{Gathering, Stage};
+use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::Beam;
@@ -18,7 +19,7 @@ impl Solver<'_> {
             next: 0,
             ambient: self.ambient(),
             irradiance: vec![Spectrum::ZERO; self.mesh.vertices.len()],
-            escaped: Power::ZERO,
+            lost: Lost::default(),
             sums: Vec::new(),
             whole: None,
         }
@@ -66,10 +67,10 @@ impl Solver<'_> {
             power,
             self.course.shots as u32 + patch as u32,
         );
-        into.escaped += lost;
+        into.lost += lost;
         if power > 1e-3 {
             into.sums
-                .push(((received + lost).element_sum() / sent, sent));
+                .push(((received + lost.all).element_sum() / sent, sent));
         }
     }
 
@@ -81,7 +82,7 @@ impl Solver<'_> {
             *unshot = *now - sent;
         }
         self.light.exitance_unshot.fill(Spectrum::ZERO);
-        self.course.escaped = gathered.escaped;
+        self.course.lost = gathered.lost;
         self.course.sent_sum = Span::of(gathered.sums.into_iter());
         self.course.stage = Stage::Finished;
     }

@@ -3,7 +3,7 @@
 use super::audit::Audit;
 use super::burial::buried;
 use super::course::{Course, Shot, Stage};
-use super::escape::{Backing, escaped};
+use super::escape::{Backing, Lost, escaped};
 use super::feelers::feelers;
 use super::ledger::Ledger;
 use super::light::{Light, Sign};
@@ -109,8 +109,9 @@ impl<'a> Solver<'a> {
     }
 
     fn outcome(self, stop_reason: StopReason, audit: Option<Audit>) -> Outcome {
-        let escaped = self.course.escaped + self.escaping();
-        let ledger = Ledger::balance(&self.mesh, &self.light, escaped, self.square_metres);
+        let mut lost = self.course.lost;
+        lost += self.escaping();
+        let ledger = Ledger::balance(&self.mesh, &self.light, &lost, self.square_metres);
         Outcome {
             elapsed: self.elapsed(),
             mesh: self.mesh,
@@ -253,22 +254,22 @@ impl<'a> Solver<'a> {
     }
 
     fn end_shot(&mut self, shot: &Shot, source: &Source) {
-        self.course.escaped += self.escape_of(shot, source);
+        self.course.lost += self.escape_of(shot, source);
         self.course.shots += 1;
     }
 
     /// What escapes of the shot that is under way.
-    fn escaping(&self) -> Power {
+    fn escaping(&self) -> Lost {
         match &self.course.stage {
             Stage::Refining(shot) => {
                 let source = shot.clone().source(&self.mesh);
                 self.escape_of(shot, &source)
             }
-            _ => Power::ZERO,
+            _ => Lost::default(),
         }
     }
 
-    fn escape_of(&self, shot: &Shot, source: &Source) -> Power {
+    fn escape_of(&self, shot: &Shot, source: &Source) -> Lost {
         let seed = self.course.shots as u32;
         let lost = self.escape(shot.shooter as usize, source, shot.power, seed);
         lost * f64::from(shot.sign.factor())
@@ -309,10 +310,12 @@ impl<'a> Solver<'a> {
     }
 
     /// What of a source's power, a fraction `power` of the emitted, leaves the scene.
-    pub(super) fn escape(&self, shooter: usize, source: &Source, power: f64, seed: u32) -> Power {
+    pub(super) fn escape(&self, shooter: usize, source: &Source, power: f64, seed: u32) -> Lost {
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
-        let is_open = |point| self.is_open(shooter, point);
+        // An emitter emits wherever it is.
+        let emits = self.mesh.patches[shooter].exitance != Spectrum::ZERO;
+        let is_open = |point| emits || self.is_open(shooter, point);
         escaped(
             source,
             self.visibility,
