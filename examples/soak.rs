@@ -2,11 +2,15 @@
 //!
 //! ```sh
 //! cargo run --release --example soak -- [--scenes N] [--seed S] [--preset P]
+//! cargo run --release --example soak -- --repeat RUNS
 //! ```
 //!
 //! Of each scene: nothing panics; the ledger closes; the engines agree; a solve in sessions, with a file between them and
 //! another number of threads, ends with the same bits; and with all surfaces alike and nothing open, everything shines with
 //! B = M / (1 - ρ). Prints what was found, with the seed of the worst scene, and fails if anything is beyond its bound.
+//!
+//! With `--repeat` the bundled scenes are solved again and again on 1, 2, 7 and 64 threads; every run of an engine must end with the
+//! same bits.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -34,6 +38,9 @@ struct Request {
     seed: u64,
     #[arg(long, value_parser = common::preset, default_value = "draft")]
     preset: Preset,
+    /// Solve the bundled scenes this often instead
+    #[arg(long, value_name = "RUNS")]
+    repeat: Option<usize>,
 }
 
 /// The largest of what was found, with its bound.
@@ -73,6 +80,9 @@ impl Worst {
 
 fn main() -> ExitCode {
     let request = Request::parse();
+    if let Some(runs) = request.repeat {
+        return repeat(runs, request.preset);
+    }
     let mut worst = [
         Worst::new("residual of the ledger over the emitted power", 0.10),
         Worst::new("nRMS difference between Embree and obvhs", 0.05),
@@ -108,6 +118,44 @@ fn main() -> ExitCode {
     let kept = worst.iter().all(Worst::is_kept);
     println!("{failures} failures");
     if kept && failures == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+fn repeat(runs: usize, preset: Preset) -> ExitCode {
+    let mut differing = 0;
+    for name in [
+        "cornell-box",
+        "shadow",
+        "secondary",
+        "emission",
+        "geometry",
+        "huge",
+    ] {
+        let scene = Scene::load(&common::scene_folder(name)).unwrap_or_else(|e| panic!("{e}"));
+        for engine in [EngineChoice::Embree, EngineChoice::Obvhs] {
+            let solved = |run: usize| {
+                let settings = Settings {
+                    options: preset.options(),
+                    engine,
+                    threads: [1, 2, 7, 64][run % 4],
+                    ..Settings::default()
+                };
+                solve(&scene, &settings, &mut Silent).map(bits)
+            };
+            let Ok(first) = solved(0) else {
+                println!("{name}: no {engine} here");
+                continue;
+            };
+            let others = (1..runs).filter(|run| solved(*run).ok().as_ref() != Some(&first));
+            let others = others.count();
+            println!("{name} by {engine}: {runs} runs, {others} with other bits");
+            differing += others;
+        }
+    }
+    if differing == 0 {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

@@ -1,4 +1,4 @@
-//! Ctrl-C keeps what has been solved.
+//! Ctrl-C and a termination signal keep what has been solved.
 
 use super::{Run, command, folder, radiosity, scene, text};
 use radiosity::solution::Solution;
@@ -6,10 +6,38 @@ use radiosity::solver::StopReason;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 #[test]
 #[cfg(unix)]
 fn an_interrupted_solve_writes_the_solution_so_far_and_ends_with_130() {
+    let folder = end_by("INT");
+    // It goes on where it was, if asked to, with stops of its own.
+    let solved = folder.path().join("solved");
+    let begun = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let more = (begun.report.shots + 1).to_string();
+    radiosity(&[
+        "resume",
+        text(&solved),
+        "--max-shots",
+        &more,
+        "--no-pictures",
+    ])
+    .assert_success();
+    let resumed = Solution::read(&solved.join("solution.rad")).expect("was written");
+    assert_eq!(resumed.report.stop_reason, StopReason::MaxShots);
+    assert!(resumed.report.rays > begun.report.rays);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_terminated_solve_does_the_same() {
+    end_by("TERM");
+}
+
+/// Ends a solve of minutes by a signal after a second; the folder with what it leaves.
+#[cfg(unix)]
+fn end_by(signal: &str) -> TempDir {
     let folder = folder();
     let output = folder.path().join("solved");
     let scene = scene("cornell-box");
@@ -39,7 +67,7 @@ fn an_interrupted_solve_writes_the_solution_so_far_and_ends_with_130() {
     sleep(Duration::from_secs(1));
     // The shell's own `kill`: the program of that name is in a package of its own.
     let kill = Command::new("sh")
-        .args(["-c", &format!("kill -INT {}", child.id())])
+        .args(["-c", &format!("kill -{signal} {}", child.id())])
         .status();
     assert!(kill.expect("can be started").success());
 
@@ -56,4 +84,5 @@ fn an_interrupted_solve_writes_the_solution_so_far_and_ends_with_130() {
     assert_eq!(solution.report.stop_reason, StopReason::Interrupted);
     assert!(output.join("report.json").exists());
     radiosity(&["render", text(&output), "--width", "32", "--height", "32"]).assert_success();
+    folder
 }

@@ -3,6 +3,7 @@
 use super::{draft, floor, folder, names, radiosity, scene, text};
 use radiosity::solution::Solution;
 use serde_json::Value;
+use std::fs;
 use std::path::Path;
 
 fn report(folder: &Path) -> Value {
@@ -160,6 +161,33 @@ fn without_an_emitter_all_is_black_and_a_warning_says_why() {
             .iter()
             .all(|e| *e == glam::Vec3::ZERO)
     );
+}
+
+/// A lamp in a box whose faces look outwards.
+#[test]
+fn a_room_turned_inside_out_is_said_to_lose_its_light() {
+    let folder = folder();
+    let room = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n\
+        usemtl wall\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 1 5 7 3\nf 2 4 8 6\nf 3 7 8 4\n";
+    let lamp = "v .4 .9 .4\nv .6 .9 .4\nv .6 .9 .6\nv .4 .9 .6\nusemtl lamp\nf 9 10 11 12\n";
+    let materials = "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n";
+    let path = folder.path().join("room.obj");
+    fs::write(&path, format!("mtllib room.mtl\n{room}{lamp}")).expect("can be written");
+    fs::write(folder.path().join("room.mtl"), materials).expect("can be written");
+    let output = folder.path().join("out");
+    let run = radiosity(&[
+        "solve",
+        text(&path),
+        "-o",
+        text(&output),
+        "--preset",
+        "draft",
+    ]);
+    run.assert_success();
+    let warning = "light falls on the backs of surfaces that radiate from the front only: 100% of the emitted power";
+    assert!(run.err.contains(warning), "{}", run.err);
+    let power = &report(&output)["power"];
+    assert_eq!(power["onto_backs"], power["escaped"]);
 }
 
 #[test]
