@@ -19,6 +19,7 @@ mod regather;
 mod room;
 mod run;
 mod shoot;
+mod shot;
 mod source;
 
 pub use audit::{Audit, Span};

@@ -2,21 +2,16 @@
 
 use super::audit::Audit;
 use super::burial::buried;
-use super::course::{Course, Shot, Stage};
-use super::escape::{Backing, Lost, escaped};
-use super::feelers::feelers;
+use super::course::{Course, Stage};
+use super::escape::Backing;
 use super::ledger::Ledger;
 use super::light::{Light, Sign};
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
-use super::refine::Refinement;
-use super::shoot::{Beam, faces, shoot_at};
-use super::source::cells_of;
-use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
-use crate::radiometry::{Power, Spectrum};
+use crate::radiometry::Power;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
@@ -174,178 +169,6 @@ impl<'a> Solver<'a> {
         let power = powers[strongest].element_sum() / emitted;
         self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
         None
-    }
-
-    /// Adds the contribution of one patch to all vertices that there are.
-    fn shoot_from(&mut self, shooter: usize, sign: Sign, power: f64) {
-        let sampler = self.sampler();
-        let from = (shooter, sign);
-        let thresholds = &sampler.thresholds;
-        let mut shot = Shot {
-            shooter: shooter as u32,
-            sign,
-            power,
-            cells: cells_of(&self.mesh, &self.light, from, &self.options, thresholds),
-            candidates: Vec::new(),
-            feelers: Vec::new(),
-            arrived: Vec::new(),
-            source: None,
-        };
-        let source = shot.source(&self.mesh);
-        let beam = Beam {
-            sampler: &sampler,
-            source: &source,
-            sign,
-        };
-        self.light.take(&self.mesh, shooter, sign);
-        let reached = self.reached(&source);
-        shot.arrived = self.arrivals(beam, &reached);
-        for (vertex, gather) in shot.arrived.iter().enumerate() {
-            self.light.irradiance[vertex] += gather.irradiance;
-            self.light.unshot[vertex] += gather.irradiance;
-        }
-        let meshes = power >= self.options.meshing_power && self.course.meshing_ended.is_none();
-        if meshes {
-            let elements = self.mesh.leaves();
-            let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
-            shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
-            let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
-            self.course.rays += rays;
-            shot.feelers = found;
-            shot.source = Some(source);
-            self.course.stage = Stage::Refining(shot);
-        } else {
-            self.end_shot(&shot, &source);
-        }
-    }
-
-    /// One pass of refinement.
-    fn refine(&mut self, mut shot: Shot) {
-        let source = shot.source(&self.mesh);
-        if let Some(end) = self.meshing_end() {
-            self.course.meshing_ended = Some(end);
-            shot.candidates.clear();
-        }
-        if shot.candidates.is_empty() {
-            self.course.meshing_shots += 1;
-            return self.end_shot(&shot, &source);
-        }
-        let sampler = self.sampler();
-        let mut refinement = Refinement {
-            beam: Beam {
-                sampler: &sampler,
-                source: &source,
-                sign: shot.sign,
-            },
-            room: self.room(),
-            mesh: &mut self.mesh,
-            light: &mut self.light,
-            arrived: &mut shot.arrived,
-            options: &self.options,
-            backing: &self.backing,
-            feelers: &shot.feelers,
-            rays: 0,
-        };
-        shot.candidates = refinement.pass(&shot.candidates);
-        self.course.rays += refinement.rays;
-        self.mesh.integrate();
-        shot.source = Some(source);
-        self.course.stage = Stage::Refining(shot);
-    }
-
-    fn end_shot(&mut self, shot: &Shot, source: &Source) {
-        self.course.lost += self.escape_of(shot, source);
-        self.course.shots += 1;
-    }
-
-    /// What escapes of the shot that is under way.
-    fn escaping(&self) -> Lost {
-        match &self.course.stage {
-            Stage::Refining(shot) => {
-                let source = shot.clone().source(&self.mesh);
-                self.escape_of(shot, &source)
-            }
-            _ => Lost::default(),
-        }
-    }
-
-    fn escape_of(&self, shot: &Shot, source: &Source) -> Lost {
-        let seed = self.course.shots as u32;
-        let lost = self.escape(shot.shooter as usize, source, shot.power, seed);
-        lost * f64::from(shot.sign.factor())
-    }
-
-    pub(super) fn sampler(&self) -> Sampler<'a> {
-        Sampler {
-            visibility: self.visibility,
-            extent: self.mesh.frame.extent(),
-            formula: self.options.formula(),
-            thresholds: self.source_thresholds(),
-        }
-    }
-
-    /// The patches that can see any of the source, planes alone considered.
-    pub(super) fn reached(&self, source: &Source) -> Vec<bool> {
-        let extent = self.mesh.frame.extent();
-        let patches = self.mesh.patches.iter();
-        patches.map(|p| faces(p, source, extent)).collect()
-    }
-
-    /// What a beam gives to each vertex of the patches that it reaches.
-    pub(super) fn arrivals(&mut self, beam: Beam, reached: &[bool]) -> Vec<Gather> {
-        let patches = self.mesh.patches.iter().zip(reached);
-        let vertices: Vec<u32> = patches
-            .filter(|(_, reached)| **reached)
-            .flat_map(|(patch, _)| patch.vertices.iter().copied())
-            .filter(|v| !self.mesh.buried[*v as usize])
-            .collect();
-        let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &vertices, &mut arrived);
-        let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
-        self.mesh.continue_to_buried(&mut irradiance, 0);
-        for (gather, received) in arrived.iter_mut().zip(irradiance) {
-            gather.irradiance = received;
-        }
-        arrived
-    }
-
-    /// What of a source's power, a fraction `power` of the emitted, leaves the scene.
-    pub(super) fn escape(&self, shooter: usize, source: &Source, power: f64, seed: u32) -> Lost {
-        // The square root shares the rays so that each shot adds its part to the error of the whole.
-        let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
-        // An emitter emits wherever it is.
-        let emits = self.mesh.patches[shooter].exitance != Spectrum::ZERO;
-        let is_open = |point| emits || self.is_open(shooter, point);
-        escaped(
-            source,
-            self.visibility,
-            &self.backing,
-            is_open,
-            self.mesh.frame.extent(),
-            (rays, seed),
-        )
-    }
-
-    /// Whether the nearest vertex to a point of a patch is open.
-    fn is_open(&self, patch: usize, point: DVec3) -> bool {
-        let (u, v) = self.mesh.patches[patch].coordinates(point);
-        let weighted = self
-            .mesh
-            .interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
-        let nearest = weighted.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        nearest.is_none_or(|(vertex, _)| !self.mesh.buried[*vertex as usize])
-    }
-
-    fn source_thresholds(&self) -> SourceThresholds {
-        SourceThresholds {
-            difference: self.options.epsilon_fd,
-            estimate: self.options.epsilon_fe,
-            raw: self.options.raw_form_factors,
-            scale: ToleranceScale {
-                reference: self.reference,
-                local_share: self.options.local_share,
-            },
-        }
     }
 
     /// By patch, first the positive, then the negative.
