@@ -128,6 +128,10 @@ impl<'a> Solver<'a> {
             if observer.progress(&self.progress()) == Control::Stop {
                 return StopReason::Interrupted;
             }
+            let elapsed = self.elapsed();
+            if self.options.time_limit.is_some_and(|most| elapsed >= most) {
+                return StopReason::TimeLimit;
+            }
             match std::mem::take(&mut self.course.stage) {
                 Stage::Shooting => {
                     if let Some(reason) = self.shoot() {
@@ -160,10 +164,6 @@ impl<'a> Solver<'a> {
         let shots = self.course.shots;
         if self.options.max_shots.is_some_and(|most| shots >= most) {
             return Some(StopReason::MaxShots);
-        }
-        let elapsed = self.elapsed();
-        if self.options.time_limit.is_some_and(|most| elapsed >= most) {
-            return Some(StopReason::TimeLimit);
         }
         let strongest = select(&powers);
         let power = powers[strongest].element_sum() / emitted;
