@@ -71,13 +71,13 @@ impl Watch {
 
 /// Embree asks before it takes memory (`post` is false, or true after the fact) and says what it gives back. What it asks for
 /// after a refusal it gives back as well, so the count stays right.
-unsafe extern "C" fn on_memory(watch: *mut c_void, bytes: isize, _post: bool) -> bool {
+extern "C" fn on_memory(watch: *mut c_void, bytes: isize, _post: bool) -> bool {
     // SAFETY: the pointer is the one that `register` gave, to a living `Watch`.
     let watch = unsafe { &*watch.cast::<Watch>() };
     watch.account(bytes as i64)
 }
 
-unsafe extern "C" fn on_error(watch: *mut c_void, _code: sys::RTCError, text: *const c_char) {
+extern "C" fn on_error(watch: *mut c_void, _code: sys::RTCError, text: *const c_char) {
     // SAFETY: as above.
     let watch = unsafe { &*watch.cast::<Watch>() };
     if !text.is_null() {
