@@ -20,3 +20,16 @@ pub fn exitance_from_radiance(radiance: Spectrum) -> Spectrum {
 pub fn radiance_from_radiosity(radiosity: Spectrum) -> Spectrum {
     radiosity / PI as f32
 }
+
+/// Weights of the channels in luminance: the middle row of the matrix from linear Rec. 709 to CIE XYZ.
+pub const LUMINANCE_WEIGHTS: Spectrum = Spectrum::new(0.2126, 0.7152, 0.0722);
+
+/// Lumens per watt of white light whose three channels are equal: 179, what Radiance assumes (its `WHTEFFICACY`) for
+/// energy spread evenly over the visible spectrum. A scene whose emitters are given in lumens has an efficacy of 1.
+pub const WHITE_EFFICACY: f64 = 179.0;
+
+/// Illuminance in lux of an irradiance (W/m²): `efficacy` lumens per watt times the weighted sum of the channels.
+/// Exitance in lm/m² and, of a radiance, luminance in cd/m² follow in the same way.
+pub fn photometric(irradiance: Spectrum, efficacy: f64) -> f64 {
+    efficacy * irradiance.as_dvec3().dot(LUMINANCE_WEIGHTS.as_dvec3())
+}

@@ -1,11 +1,13 @@
 //! The command line: one file a subcommand. The only user of clap, indicatif and ctrlc; may import everything public.
 
 mod error;
+mod export;
 mod flags;
 mod form_factors;
 mod heat;
 mod info;
 mod memory;
+mod meshes;
 mod pictures;
 mod probe;
 mod progress;
@@ -41,6 +43,8 @@ enum Command {
     Render(render::Arguments),
     /// Read the light at points of a solution.
     Probe(probe::Arguments),
+    /// Write the lit mesh of a solution for another program: glTF, PLY, OBJ or VTK.
+    Export(export::Arguments),
     /// Compute the form factors between all surfaces, with occlusion.
     FormFactors(form_factors::Arguments),
     /// Say what a scene holds, without solving it.
@@ -63,6 +67,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Resume(arguments) => resume::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::FormFactors(arguments) => form_factors::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
     };

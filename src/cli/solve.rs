@@ -4,12 +4,13 @@ use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
 use super::memory::peak_memory;
+use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
 use super::progress::catch_interrupts;
 use super::session::Session;
 use super::values::duration;
-use crate::output::{SummaryRow, remove_abandoned, summary_table, write_atomically, write_ply};
-use crate::radiometry::radiance_from_radiosity;
+use crate::output::{SummaryRow, remove_abandoned, summary_table, write_atomically};
+use crate::radiometry::WHITE_EFFICACY;
 use crate::render::{RenderOptions, Tone};
 use crate::scene::Scene;
 use crate::solution::{Report, Solution};
@@ -53,6 +54,9 @@ pub(super) struct How {
     /// Leave the pictures out
     #[arg(long)]
     pub no_pictures: bool,
+    /// Lit meshes to write beside the solution: any of glb, obj, ply and vtu, or none
+    #[arg(long, value_name = "LIST", default_value = "ply,glb,vtu")]
+    pub formats: Formats,
     /// Save the state at the start and then at these intervals (60 s if no TIME is given), for `radiosity resume`
     #[arg(long, value_name = "TIME", value_parser = duration, num_args = 0..=1, default_missing_value = "60")]
     pub checkpoint: Option<Duration>,
@@ -159,11 +163,16 @@ pub(super) fn write(solution: &mut Solution, folder: &Path, how: &How) -> Result
     let started = Instant::now();
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     let lit = solution.lit_mesh();
-    let tone = Tone::for_mesh(&lit);
-    let errors = solution.triangle_errors(&lit);
-    write_ply(&folder.join("solution.ply"), &lit, errors.as_deref(), |v| {
-        tone.colour(radiance_from_radiosity(v.radiosity))
-    })?;
+    let exporter = Exporter {
+        solution,
+        lit: &lit,
+        tone: Tone::for_mesh(&lit),
+        efficacy: WHITE_EFFICACY,
+    };
+    for format in &how.formats.0 {
+        let name = format!("solution.{}", format.extension());
+        exporter.write(*format, &folder.join(name))?;
+    }
     if !how.no_pictures {
         for (number, camera) in solution.cameras.iter().enumerate() {
             // The first camera's pictures lie in the folder itself, those of others in a folder of their name.

@@ -1,6 +1,6 @@
 //! From radiance to what a screen shows.
 
-use crate::radiometry::{Spectrum, radiance_from_radiosity};
+use crate::radiometry::{LUMINANCE_WEIGHTS, Spectrum, radiance_from_radiosity};
 use crate::solution::LitMesh;
 use glam::Vec3;
 
@@ -99,7 +99,7 @@ impl Metered {
 
     /// Luminance of the leaving radiance, by the weights of Rec. 709.
     fn luminance(&self) -> f64 {
-        f64::from(radiance_from_radiosity(self.radiosity).dot(Vec3::new(0.2126, 0.7152, 0.0722)))
+        f64::from(radiance_from_radiosity(self.radiosity).dot(LUMINANCE_WEIGHTS))
     }
 }
 

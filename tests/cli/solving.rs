@@ -30,8 +30,10 @@ fn a_solve_leaves_solution_mesh_pictures_and_report() {
         "report.json",
         "shaded.exr",
         "shaded.png",
+        "solution.glb",
         "solution.ply",
         "solution.rad",
+        "solution.vtu",
         "wireframe.png",
     ];
     assert_eq!(names(folder.path()), expected);
@@ -128,10 +130,14 @@ fn threads_and_options_are_those_asked_for() {
     assert_eq!(report["shots"], 3);
     assert_eq!(report["stop_reason"], "max-shots");
     assert_eq!(report["options"]["epsilon_d"], 0.5);
-    assert_eq!(
-        names(&output),
-        ["report.json", "solution.ply", "solution.rad"]
-    );
+    let left = [
+        "report.json",
+        "solution.glb",
+        "solution.ply",
+        "solution.rad",
+        "solution.vtu",
+    ];
+    assert_eq!(names(&output), left);
 }
 
 #[test]
