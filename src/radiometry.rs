@@ -33,3 +33,21 @@ pub const WHITE_EFFICACY: f64 = 179.0;
 pub fn photometric(irradiance: Spectrum, efficacy: f64) -> f64 {
     efficacy * irradiance.as_dvec3().dot(LUMINANCE_WEIGHTS.as_dvec3())
 }
+
+/// The sRGB transfer function (IEC 61966-2-1): what a picture holds of linear light from 0 to 1.
+pub fn srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// The inverse of [`srgb`].
+pub fn linear(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 {
+        srgb / 12.92
+    } else {
+        ((srgb + 0.055) / 1.055).powf(2.4)
+    }
+}

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj; materials are not needed
+    /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; materials are not needed
     scene: PathBuf,
     /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it
     #[arg(short, long, value_name = "FILE")]

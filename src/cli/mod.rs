@@ -4,6 +4,7 @@ mod error;
 mod export;
 mod flags;
 mod form_factors;
+mod grid;
 mod heat;
 mod info;
 mod memory;

@@ -27,7 +27,7 @@ pub(super) const SOLUTION: &str = "solution.rad";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj; with --from, the report's scene if left out
+    /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; with --from, the report's scene if left out
     #[arg(required_unless_present = "from")]
     scene: Option<PathBuf>,
     /// Take engine and options from the report.json of another solve, to repeat it

@@ -50,7 +50,7 @@ pub fn write_glb(
     let blocks = blocks(mesh, &places, &display);
     write_atomically(path, |out| {
         let mut text = document(mesh, facts, &places, &blocks).to_string();
-        while text.len() % 4 != 0 {
+        while !text.len().is_multiple_of(4) {
             text.push(' ');
         }
         let binary = offsets(&blocks, 0).1;

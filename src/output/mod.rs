@@ -9,8 +9,8 @@ mod exr;
 mod glb;
 mod matrix;
 mod obj;
+mod picture;
 mod ply;
-mod png;
 mod table;
 mod vtu;
 
@@ -21,8 +21,8 @@ pub use matrix::{
     Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,
 };
 pub use obj::write_obj;
+pub use picture::write_png;
 pub use ply::write_ply;
-pub use png::write_png;
 pub use table::{SummaryRow, summary_table};
 pub use vtu::{VtuFacts, write_vtu};
 

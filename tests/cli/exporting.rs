@@ -77,6 +77,20 @@ fn solve_writes_the_formats_that_are_asked_for() {
 }
 
 #[test]
+fn a_written_glb_is_a_scene_again() {
+    let (_folder, solved) = draft("cornell-box");
+    let run = radiosity(&["info", text(&solved.join("solution.glb"))]);
+    run.assert_success();
+    for words in [
+        "unit          1 m",
+        "emitters      0",
+        "camera        front",
+    ] {
+        assert!(run.out.contains(words), "`{words}` is not in:\n{}", run.out);
+    }
+}
+
+#[test]
 fn the_cornell_box_has_its_size_in_metres_and_its_camera() {
     let (_folder, solved) = draft("cornell-box");
     let (document, _) = gltf::Gltf::open(solved.join("solution.glb"))
