@@ -26,22 +26,22 @@ pub(super) struct GridFlags {
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true, help_heading = GRID)]
     pub(super) grid: Option<PlaneAt>,
     /// Distance of the points: a number of scene units, or with the unit m, cm, mm, in or ft
-    #[arg(long, value_name = "LENGTH", default_value = "0.25m", requires = "grid", help_heading = GRID)]
+    #[arg(long, value_name = "LENGTH", default_value = "0.25m", value_parser = spacing, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     spacing: Length,
     /// Only between these, in scene units: x from,z from,x to,z to on a plane across y; else the whole scene
-    #[arg(long, value_name = "A,B,A,B", value_parser = region, allow_hyphen_values = true, requires = "grid", help_heading = GRID)]
+    #[arg(long, value_name = "A,B,A,B", value_parser = region, allow_hyphen_values = true, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     region: Option<[f64; 4]>,
     /// A picture in false colours with a legend (PNG)
-    #[arg(long, value_name = "FILE", requires = "grid", help_heading = GRID)]
+    #[arg(long, value_name = "FILE", requires = "grid", conflicts_with = "points", help_heading = GRID)]
     picture: Option<PathBuf>,
     /// Lumens per watt, for illuminance; 1 if the emitters were given in lumens
-    #[arg(long, value_name = "LM/W", default_value_t = WHITE_EFFICACY, value_parser = positive, requires = "grid", help_heading = GRID)]
+    #[arg(long, value_name = "LM/W", default_value_t = WHITE_EFFICACY, value_parser = positive, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     efficacy: f64,
     /// Who traces the rays: auto, embree, obvhs or brute-force
-    #[arg(long, default_value = "auto", value_name = "ENGINE", requires = "grid", help_heading = GRID)]
+    #[arg(long, default_value = "auto", value_name = "ENGINE", requires = "grid", conflicts_with = "points", help_heading = GRID)]
     engine: EngineChoice,
     /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N", requires = "grid", help_heading = GRID)]
+    #[arg(long, default_value_t = 0, value_name = "N", requires = "grid", conflicts_with = "points", help_heading = GRID)]
     threads: usize,
 }
 
@@ -238,6 +238,14 @@ impl std::str::FromStr for Length {
             number: number.ok_or("expected a length such as 0.25m")?,
             metres: unit.map(|(_, metres)| *metres),
         })
+    }
+}
+
+fn spacing(text: &str) -> Result<Length, String> {
+    let length: Length = text.parse()?;
+    match length.number > 0.0 {
+        true => Ok(length),
+        false => Err("expected a length such as 0.25m".into()),
     }
 }
 

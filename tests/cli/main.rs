@@ -2,6 +2,7 @@
 
 mod damaged;
 mod exporting;
+mod grids;
 mod interrupted;
 mod matrices;
 mod probing;
