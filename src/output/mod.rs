@@ -7,9 +7,11 @@ mod atomic;
 mod blocks;
 mod exr;
 mod glb;
+mod html;
 mod matrix;
 mod obj;
 mod picture;
+mod plot;
 mod ply;
 mod table;
 mod vtu;
@@ -17,6 +19,7 @@ mod vtu;
 pub use atomic::{WriteError, remove_abandoned, write_atomically};
 pub use exr::write_exr;
 pub use glb::{GlbFacts, write_glb};
+pub use html::{Moment, Page, write_html};
 pub use matrix::{
     Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,
 };

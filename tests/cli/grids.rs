@@ -176,7 +176,11 @@ fn grids_that_make_no_sense_are_refused() {
         2,
         &["cannot be used with"],
     );
-    refused(&["--spacing", "1m", "points.csv"], 2, &["cannot be used with"]);
+    refused(
+        &["--spacing", "1m", "points.csv"],
+        2,
+        &["cannot be used with"],
+    );
     refused(&[], 2, &["required"]);
     refused(
         &["--grid", "y=1", "--spacing", "1e-9"],
