@@ -2,9 +2,9 @@
 
 use super::CliError;
 use super::error::Code;
-use super::flags::positive;
 use super::meshes::{Exporter, MeshFormat};
 use super::solve::SOLUTION;
+use super::values::positive;
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::Tone;
 use crate::solution::Solution;

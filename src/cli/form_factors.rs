@@ -3,6 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::heat::{self, write_radiosity};
+use super::say;
 use super::values::{named, not_negative, positive};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
 use crate::output::{
@@ -103,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     };
     let enclosure = Enclosure::new(&named, &options)?;
     for warning in enclosure.warnings() {
-        eprintln!("warning: {warning}");
+        say::warning(warning);
     }
     let notes = notes(arguments, &enclosure);
     let table = MatrixTable {

@@ -1,7 +1,7 @@
 //! `radiosity probe --grid`: illuminance on a plane of work.
 
 use super::CliError;
-use super::flags::positive;
+use super::values::positive;
 use crate::geometry::polygon;
 use crate::irradiance_at;
 use crate::output::{write_atomically, write_png};

@@ -2,6 +2,7 @@
 
 use super::CliError;
 use super::error::Code;
+use super::say;
 use crate::scene::{MaterialSummary, Scene, Summary};
 use clap::Args;
 use rustc_hash::FxHashMap;
@@ -16,9 +17,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let scene = Scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    say::warnings(&scene.warnings);
     print!("{}", describe(&scene, &scene.summary()));
     Ok(Code::Success)
 }

@@ -222,12 +222,9 @@ impl Page<'_> {
         let Some(audit) = self.report.audit else {
             return String::new();
         };
-        let span = |span: &crate::solver::Span| {
-            format!(
-                "{:.4} to {:.4}, mean {:.4}",
-                span.least, span.most, span.mean
-            )
-        };
+        let span =
+            |least: f64, mean: f64, most: f64| format!("{least:.4} to {most:.4}, mean {mean:.4}");
+        let received = &audit.received_sum;
         let mut rows = vec![
             (
                 "estimated error of the irradiance",
@@ -244,13 +241,16 @@ impl Page<'_> {
             ),
             (
                 "form factors from a point to all (1 in a closed scene)",
-                span(&audit.received_sum),
+                span(received.least, received.mean, received.most),
             ),
         ];
         if let Some(sent) = &audit.sent_sum {
-            rows.push(("arrived and escaped over sent, by patch (1)", span(sent)));
+            rows.push((
+                "arrived and escaped over sent, by patch (1)",
+                span(sent.least, sent.mean, sent.most),
+            ));
         }
-        if let Some(target) = self.report.target {
+        if let Some(target) = &self.report.target {
             let reached = if target.reached {
                 "reached"
             } else {

@@ -2,10 +2,10 @@
 
 use super::audit::FINER;
 use super::escape::{Backing, cosine_direction, is_dark};
+use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::evaluate;
-use super::source::source_of;
-use super::state::Light;
+use super::source::{cells_of, source_from};
 use crate::form_factor::{Receiver, Sampler, SourceThresholds, ToleranceScale};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
@@ -137,16 +137,18 @@ impl<'a> OpenLight<'a> {
         };
         let mut sums = vec![Power::ZERO; receivers.len()];
         for patch in 0..self.mesh.patches.len() {
-            if self.whole.unshot_power(self.mesh, patch) == Power::ZERO {
+            if self.whole.unshot_power(self.mesh, patch, Sign::Positive) == Power::ZERO {
                 continue;
             }
-            let source = source_of(
+            let shooter = (patch, Sign::Positive);
+            let cells = cells_of(
                 self.mesh,
                 &self.whole,
-                patch,
+                shooter,
                 self.options,
                 &sampler.thresholds,
             );
+            let source = source_from(self.mesh, patch, &cells);
             let (gathers, _) = evaluate(&sampler, &source, receivers);
             for (sum, gather) in sums.iter_mut().zip(gathers) {
                 *sum += gather.irradiance.as_dvec3();

@@ -56,10 +56,11 @@ fn solve_writes_the_formats_that_are_asked_for() {
     let folder = folder();
     let scene = floor(&folder);
     for (list, expected) in [
-        ("none", &["report.json", "solution.rad"][..]),
+        ("none", &["report.html", "report.json", "solution.rad"][..]),
         (
             "obj, vtu,obj",
             &[
+                "report.html",
                 "report.json",
                 "solution.obj",
                 "solution.rad",

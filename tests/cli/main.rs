@@ -5,11 +5,13 @@ mod exporting;
 mod grids;
 mod interrupted;
 mod matrices;
+mod pages;
 mod probing;
 mod refused;
 mod rendering;
 mod resuming;
 mod solving;
+mod terminal;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
