@@ -1,4 +1,4 @@
-//! An observer of one's own: it prints a line whenever unshot power has halved, and stops the solve after a million rays.
+//! An observer of one's own: it prints a line whenever unshot power has halved, and stops the solve after twenty million rays.
 //!
 //! ```text
 //! cargo run --release --example own_observer -- scenes/cornell-box
@@ -20,7 +20,7 @@ impl Observer for Halving {
             println!("{:6} shots: {:.3} % unshot", now.shots, 100.0 * unshot);
             self.0 = unshot / 2.0;
         }
-        match now.rays < 1_000_000 {
+        match now.rays < 20_000_000 {
             true => Control::Continue,
             // What there is so far becomes the solution.
             false => Control::Stop,

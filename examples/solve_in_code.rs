@@ -87,6 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         metres_per_unit: scene.metres_per_unit,
         cameras: &scene.cameras,
         exposure: tone.exposure(),
+        two_sided: &[],
     };
     write_glb(Path::new(&path), &mesh, &facts, |vertex| {
         tone.display(radiance_from_radiosity(vertex.radiosity))

@@ -7,6 +7,7 @@ use crate::render::Tone;
 use crate::solution::{LitMesh, LitVertex, Solution};
 use clap::ValueEnum;
 use glam::Vec3;
+use rustc_hash::FxHashSet;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -105,12 +106,32 @@ impl Exporter<'_> {
         self.tone.colour(radiance_from_radiosity(vertex.radiosity))
     }
 
+    /// By vertex whether it is on one side of a sheet that radiates from both.
+    fn two_sided(&self) -> Vec<bool> {
+        let mesh = &self.solution.mesh;
+        let backs = mesh.patches.iter().filter(|patch| patch.back);
+        let both: FxHashSet<u32> = backs.map(|patch| patch.surface).collect();
+        let mut two_sided = vec![false; self.lit.vertices.len()];
+        for triangle in &self.lit.triangles {
+            let patch = mesh.elements[triangle.element as usize].patch;
+            if both.contains(&mesh.patches[patch as usize].surface) {
+                triangle
+                    .vertices
+                    .iter()
+                    .for_each(|v| two_sided[*v as usize] = true);
+            }
+        }
+        two_sided
+    }
+
     fn glb(&self, path: &Path) -> Result<(), CliError> {
+        let two_sided = self.two_sided();
         let facts = GlbFacts {
             name: &self.solution.report.scene,
             metres_per_unit: self.solution.metres_per_unit,
             cameras: &self.solution.cameras,
             exposure: self.tone.exposure(),
+            two_sided: &two_sided,
         };
         Ok(write_glb(path, self.lit, &facts, |vertex| {
             self.tone.display(radiance_from_radiosity(vertex.radiosity))

@@ -26,7 +26,13 @@ pub struct GlbFacts<'a> {
     pub cameras: &'a [Camera],
     /// Stops of the exposure that is baked into the colours, for the file to state.
     pub exposure: f64,
+    /// By vertex whether it is on one side of a sheet that radiates from both; may be empty, if there are none.
+    pub two_sided: &'a [bool],
 }
+
+/// The two sides of a sheet are moved apart by twice this fraction of the extent: a renderer that does not cull back faces would
+/// show both in one place.
+const APART: f64 = 1e-5;
 
 /// Writes one mesh of triangles in metres, y up, that any glTF viewer shows lit.
 ///
@@ -46,7 +52,7 @@ pub fn write_glb(
     facts: &GlbFacts,
     display: impl Fn(&LitVertex) -> Vec3,
 ) -> Result<(), WriteError> {
-    let places = Places::of(mesh, facts.metres_per_unit);
+    let places = Places::of(mesh, facts);
     let blocks = blocks(mesh, &places, &display);
     write_atomically(path, |out| {
         let mut text = document(mesh, facts, &places, &blocks).to_string();
@@ -74,23 +80,42 @@ fn write_words<const N: usize>(out: &mut impl Write, words: [u32; N]) -> io::Res
 }
 
 /// From scene units to single-precision metres.
-struct Places {
+struct Places<'a> {
     origin: DVec3,
     metres: f64,
+    /// From the middle of a sheet to its sides, in scene units.
+    apart: f64,
+    two_sided: &'a [bool],
 }
 
-impl Places {
-    fn of(mesh: &LitMesh, metres: f64) -> Self {
-        let mut origin = DVec3::ZERO;
-        if needs_double(&mesh.positions) {
-            let (low, high) = bounds(mesh.positions.iter().copied());
-            origin = (low + high) / 2.0;
+impl<'a> Places<'a> {
+    fn of(mesh: &LitMesh, facts: &GlbFacts<'a>) -> Self {
+        let (low, high) = bounds(mesh.positions.iter().copied());
+        Self {
+            origin: match needs_double(&mesh.positions) {
+                true => (low + high) / 2.0,
+                false => DVec3::ZERO,
+            },
+            metres: facts.metres_per_unit,
+            apart: APART * (high - low).max_element(),
+            two_sided: facts.two_sided,
         }
-        Self { origin, metres }
     }
 
-    fn of_vertex(&self, mesh: &LitMesh, vertex: &LitVertex) -> Vec3 {
-        ((mesh.positions[vertex.position as usize] - self.origin) * self.metres).as_vec3()
+    /// In the order of the vertices.
+    fn all(&self, mesh: &'a LitMesh) -> impl Iterator<Item = Vec3> + '_ {
+        let both = self
+            .two_sided
+            .iter()
+            .copied()
+            .chain(std::iter::repeat(false));
+        mesh.vertices.iter().zip(both).map(|(vertex, both)| {
+            let mut place = mesh.positions[vertex.position as usize] - self.origin;
+            if both {
+                place += self.apart * vertex.normal.as_dvec3();
+            }
+            (place * self.metres).as_vec3()
+        })
     }
 }
 
@@ -103,7 +128,7 @@ fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
 /// Position, normal, colour, radiosity, irradiance, indices.
 fn blocks<'a>(
     mesh: &'a LitMesh,
-    places: &'a Places,
+    places: &'a Places<'a>,
     display: &'a impl Fn(&LitVertex) -> Vec3,
 ) -> Vec<Block<'a>> {
     let (vertices, count) = (|| mesh.vertices.iter(), mesh.vertices.len());
@@ -114,9 +139,7 @@ fn blocks<'a>(
         [r[0], r[1], g[0], g[1], b[0], b[1], 255, 255]
     };
     vec![
-        Block::new(count, move || {
-            vertices().map(|v| floats(places.of_vertex(mesh, v)))
-        }),
+        Block::new(count, move || places.all(mesh).map(floats)),
         Block::new(count, move || vertices().map(|v| floats(v.normal))),
         Block::new(count, move || vertices().map(colour)),
         Block::new(count, move || vertices().map(|v| floats(v.radiosity))),
@@ -192,11 +215,7 @@ fn described_mesh(facts: &GlbFacts) -> Value {
 
 fn accessors(mesh: &LitMesh, places: &Places) -> Value {
     let (vertices, corners) = (mesh.vertices.len(), 3 * mesh.triangles.len());
-    let (low, high) = bounds(
-        mesh.vertices
-            .iter()
-            .map(|v| places.of_vertex(mesh, v).as_dvec3()),
-    );
+    let (low, high) = bounds(places.all(mesh).map(|place| place.as_dvec3()));
     let vectors = |view| json!({ "bufferView": view, "componentType": FLOAT, "count": vertices, "type": "VEC3" });
     let mut positions = vectors(0);
     positions["min"] = json!(low.to_array());

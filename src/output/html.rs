@@ -161,29 +161,21 @@ impl Page<'_> {
             "<h2>Energy</h2>\n<table>\n{}",
             header(&["", "W", "share", "red W", "green W", "blue W"])
         );
-        let parts: [(&str, Part<f64>, Part<[f64; 3]>); 5] = [
-            ("emitted", |p| p.emitted, |p| p.emitted),
-            ("absorbed by surfaces", |p| p.absorbed, |p| p.absorbed),
-            ("escaped", |p| p.escaped, |p| p.escaped),
-            ("unshot", |p| p.unshot, |p| p.unshot),
-            (
-                "left over (error of the discretisation)",
-                |p| p.residual,
-                |p| p.residual,
-            ),
-        ];
-        for (name, of, by_channel) in parts {
+        for (name, of) in PARTS {
             let share = 100.0 * of(sum) / sum.emitted.max(f64::MIN_POSITIVE);
-            let [r, g, b] = by_channel(channels).map(|watts| format!("{watts:.6}"));
-            let cells = [
-                name,
-                &format!("{:.6}", of(sum)),
-                &format!("{share:.2} %"),
-                &r,
-                &g,
-                &b,
-            ];
-            html += &row(&cells, &[1, 2, 3, 4, 5]);
+            let channel = |number: usize| {
+                let one = PowerReport {
+                    emitted: channels.emitted[number],
+                    absorbed: channels.absorbed[number],
+                    escaped: channels.escaped[number],
+                    unshot: channels.unshot[number],
+                    residual: channels.residual[number],
+                };
+                format!("{:.6}", of(&one))
+            };
+            let [watts, share] = [format!("{:.6}", of(sum)), format!("{share:.2} %")];
+            let [r, g, b] = [0, 1, 2].map(channel);
+            html += &row(&[name, &watts, &share, &r, &g, &b], &[1, 2, 3, 4, 5]);
         }
         html + "</table>\n"
     }
@@ -290,7 +282,18 @@ impl Page<'_> {
     }
 }
 
-type Part<T> = fn(&PowerReport<T>) -> T;
+/// A line of the ledger.
+type Part = (&'static str, fn(&PowerReport<f64>) -> f64);
+
+const PARTS: [Part; 5] = [
+    ("emitted", |power| power.emitted),
+    ("absorbed by surfaces", |power| power.absorbed),
+    ("escaped", |power| power.escaped),
+    ("unshot", |power| power.unshot),
+    ("left over (error of the discretisation)", |power| {
+        power.residual
+    }),
+];
 
 /// At most some hundred moments, the first and the last among them.
 fn thinned(history: &[Moment]) -> Vec<&Moment> {

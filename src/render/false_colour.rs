@@ -124,8 +124,7 @@ impl Canvas {
 fn short(value: f64) -> String {
     match value {
         0.0 => "0".into(),
-        large if large >= 1e6 || large < 1e-3 => format!("{large:.0e}"),
-        middle => {
+        middle if (1e-3..1e6).contains(&middle) => {
             let decimals = (2 - middle.log10().floor() as i32).clamp(0, 6) as usize;
             let text = format!("{middle:.decimals$}");
             match text.contains('.') {
@@ -133,6 +132,7 @@ fn short(value: f64) -> String {
                 false => text,
             }
         }
+        other => format!("{other:.0e}"),
     }
 }
 

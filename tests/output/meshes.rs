@@ -25,6 +25,14 @@ fn camera() -> Camera {
 
 /// The bytes of a `.glb` in centimetres.
 fn glb(mesh: &LitMesh, cameras: &[Camera]) -> Result<Vec<u8>, Box<dyn Error>> {
+    glb_of_sides(mesh, cameras, &[])
+}
+
+fn glb_of_sides(
+    mesh: &LitMesh,
+    cameras: &[Camera],
+    two_sided: &[bool],
+) -> Result<Vec<u8>, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("solution.glb");
     let facts = GlbFacts {
@@ -32,6 +40,7 @@ fn glb(mesh: &LitMesh, cameras: &[Camera]) -> Result<Vec<u8>, Box<dyn Error>> {
         metres_per_unit: 0.01,
         cameras,
         exposure: 1.5,
+        two_sided,
     };
     write_glb(&path, mesh, &facts, |vertex| {
         Vec3::new(vertex.radiosity.x / 20.0, 0.5, 7.0)
@@ -118,6 +127,30 @@ fn glb_far_from_the_origin_keeps_its_shape() -> Outcome {
         let read = (positions[pair[0]] - positions[pair[1]]).as_dvec3();
         assert!(read.distance(side) < 1e-7, "{read} for {side}");
     }
+    Ok(())
+}
+
+#[test]
+fn glb_keeps_the_sides_of_a_sheet_apart() -> Outcome {
+    let mesh = small_mesh(DVec3::ZERO);
+    let positions = |bytes: &[u8]| -> Result<Vec<Vec3>, Box<dyn Error>> {
+        let read = gltf::Gltf::from_slice(bytes)?;
+        let primitive = read.meshes().next().and_then(|m| m.primitives().next());
+        let blob = read.blob.as_deref();
+        let primitive = primitive.ok_or("no primitive")?;
+        let positions = primitive.reader(|_| blob).read_positions();
+        Ok(positions.ok_or("no positions")?.map(Vec3::from).collect())
+    };
+    let plain = positions(&glb(&mesh, &[])?)?;
+    let apart = positions(&glb_of_sides(&mesh, &[], &[false, true, false])?)?;
+    assert_eq!((plain[0], plain[2]), (apart[0], apart[2]));
+    // The mesh is 1 unit of 1 cm wide.
+    let moved = 1e-5 * 0.01 * mesh.vertices[1].normal;
+    assert!(
+        (apart[1] - plain[1]).distance(moved) < 1e-9,
+        "{}",
+        apart[1] - plain[1]
+    );
     Ok(())
 }
 
