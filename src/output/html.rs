@@ -168,6 +168,7 @@ impl Page<'_> {
                     emitted: channels.emitted[number],
                     absorbed: channels.absorbed[number],
                     escaped: channels.escaped[number],
+                    onto_backs: channels.onto_backs[number],
                     unshot: channels.unshot[number],
                     residual: channels.residual[number],
                 };
@@ -285,10 +286,11 @@ impl Page<'_> {
 /// A line of the ledger.
 type Part = (&'static str, fn(&PowerReport<f64>) -> f64);
 
-const PARTS: [Part; 5] = [
+const PARTS: [Part; 6] = [
     ("emitted", |power| power.emitted),
     ("absorbed by surfaces", |power| power.absorbed),
     ("escaped", |power| power.escaped),
+    ("… of it onto backs that do not radiate", |power| power.onto_backs),
     ("unshot", |power| power.unshot),
     ("left over (error of the discretisation)", |power| {
         power.residual
