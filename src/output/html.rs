@@ -290,7 +290,7 @@ const PARTS: [Part; 6] = [
     ("emitted", |power| power.emitted),
     ("absorbed by surfaces", |power| power.absorbed),
     ("escaped", |power| power.escaped),
-    ("… of it onto backs that do not radiate", |power| power.onto_backs),
+    ("… of it onto dark backs", |power| power.onto_backs),
     ("unshot", |power| power.unshot),
     ("left over (error of the discretisation)", |power| {
         power.residual
