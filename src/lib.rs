@@ -13,6 +13,7 @@
 //! * [`form_factor`]: Eq. (1), Eq. (2), the five-times rule and the adaptively sampled source
 //! * [`mesh`]: patches, quadtrees and the interpolant; [`solver`]: select, shoot, refine, account
 //! * [`matrix`]: form factors between all surfaces, for exchange rather than pictures
+//! * [`codec`]: base64, PNG and JPEG
 //! * [`solution`]: the result, probing, its report and file; [`output`], [`render`]: files and pictures
 //!
 //! # Conventions
@@ -31,6 +32,7 @@
 #![deny(missing_docs)]
 
 pub mod cli;
+pub mod codec;
 pub mod form_factor;
 pub mod geometry;
 pub mod matrix;
@@ -45,5 +47,5 @@ pub mod solver;
 mod threads;
 pub mod visibility;
 
-pub use pipeline::{Run, Settings, SolveError, Target, solve};
+pub use pipeline::{Run, Settings, SolveError, Target, irradiance_at, solve};
 pub use threads::ThreadsError;

@@ -3,6 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::heat::{self, write_radiosity};
+use super::say;
 use super::values::{named, not_negative, positive};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
 use crate::output::{
@@ -18,7 +19,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj; materials are not needed
+    /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; materials are not needed
     scene: PathBuf,
     /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it
     #[arg(short, long, value_name = "FILE")]
@@ -103,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     };
     let enclosure = Enclosure::new(&named, &options)?;
     for warning in enclosure.warnings() {
-        eprintln!("warning: {warning}");
+        say::warning(warning);
     }
     let notes = notes(arguments, &enclosure);
     let table = MatrixTable {

@@ -2,22 +2,22 @@
 
 use super::CliError;
 use super::error::Code;
-use crate::scene::{Scene, Summary};
+use super::say;
+use crate::scene::{MaterialSummary, Scene, Summary};
 use clap::Args;
+use rustc_hash::FxHashMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj
+    /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply
     scene: PathBuf,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let scene = Scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    say::warnings(&scene.warnings);
     print!("{}", describe(&scene, &scene.summary()));
     Ok(Code::Success)
 }
@@ -53,12 +53,16 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
             ),
         );
     }
-    for of in &summary.materials {
+    for (of, colours) in by_name(&summary.materials) {
         let material = &of.material;
+        let mean = match colours {
+            1 => String::new(),
+            n => format!(" (means of {n} colours of its textures)"),
+        };
         line(
             "material",
             format!(
-                "{} reflectance {:.3} radiance {:.3}: {} surfaces, {:.6} m²",
+                "{} reflectance {:.3} radiance {:.3}{mean}: {} surfaces, {:.6} m²",
                 material.name,
                 material.reflectance,
                 material.emitted_radiance,
@@ -68,4 +72,27 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
         );
     }
     text
+}
+
+/// Materials that share a name as one, with how many they are: textures give a material several colours.
+fn by_name(materials: &[MaterialSummary]) -> Vec<(MaterialSummary, usize)> {
+    let mut places: FxHashMap<&str, usize> = FxHashMap::default();
+    let mut merged: Vec<(MaterialSummary, usize)> = Vec::new();
+    for of in materials {
+        let place = *places.entry(&of.material.name).or_insert(merged.len());
+        let Some((all, colours)) = merged.get_mut(place) else {
+            merged.push((of.clone(), 1));
+            continue;
+        };
+        let area = (all.area + of.area).max(f64::MIN_POSITIVE);
+        let share = (of.area / area) as f32;
+        let (mean, more) = (&mut all.material, &of.material);
+        mean.reflectance = mean.reflectance.lerp(more.reflectance, share);
+        mean.emitted_radiance = mean.emitted_radiance.lerp(more.emitted_radiance, share);
+        all.surfaces += of.surfaces;
+        all.area += of.area;
+        all.emitted_power += of.emitted_power;
+        *colours += 1;
+    }
+    merged
 }

@@ -1,50 +1,66 @@
 //! The command line: one file a subcommand. The only user of clap, indicatif and ctrlc; may import everything public.
 
 mod error;
+mod examples;
+mod export;
 mod flags;
 mod form_factors;
+mod grid;
 mod heat;
 mod info;
 mod memory;
+mod meshes;
 mod pictures;
 mod probe;
 mod progress;
 mod render;
 mod resume;
+mod say;
 mod session;
+mod shell;
 mod solve;
 mod values;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use error::CliError;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Progressive radiosity: the view-independent diffuse light of polygonal scenes.
 #[derive(Debug, Parser)]
-#[command(version, about, long_about = None, after_help = EXIT_CODES)]
+#[command(version, about, long_about = None, after_help = examples::ALL)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 success, 1 failure while running or writing, 2 wrong usage, 3 unusable input, \
-130 interrupted (the solution so far is written)";
-
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Solve a scene: writes the solution, a lit mesh, pictures and a report.
+    #[command(after_long_help = examples::solve())]
     Solve(solve::Arguments),
     /// Go on with a solve: from a checkpoint, with stricter options, or with other emitters.
+    #[command(after_help = examples::RESUME)]
     Resume(resume::Arguments),
     /// Draw pictures of a solution.
+    #[command(after_help = examples::RENDER)]
     Render(render::Arguments),
     /// Read the light at points of a solution.
+    #[command(after_help = examples::PROBE)]
     Probe(probe::Arguments),
+    /// Write the lit mesh of a solution for another program: glTF, PLY, OBJ or VTK.
+    #[command(after_help = examples::EXPORT)]
+    Export(export::Arguments),
     /// Compute the form factors between all surfaces, with occlusion.
+    #[command(after_help = examples::FORM_FACTORS)]
     FormFactors(form_factors::Arguments),
     /// Say what a scene holds, without solving it.
+    #[command(after_help = examples::INFO)]
     Info(info::Arguments),
+    /// Print a script that completes commands and flags in a shell.
+    Completions(shell::Completions),
+    /// Write man pages.
+    Man(shell::Pages),
 }
 
 /// Runs the command line of this process.
@@ -63,13 +79,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Resume(arguments) => resume::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::FormFactors(arguments) => form_factors::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments, Cli::command()),
+        Command::Man(arguments) => shell::pages(&arguments, Cli::command()),
     };
     match result {
         Ok(code) => code.into(),
         Err(error) => {
-            eprintln!("error: {error}");
+            say::error(&error.to_string());
             error.code().into()
         }
     }

@@ -2,6 +2,7 @@
 
 use super::CliError;
 use super::error::Code;
+use super::grid::GridFlags;
 use super::solve::SOLUTION;
 use crate::output::write_atomically;
 use crate::solution::{Probe, Prober, Solution};
@@ -26,15 +27,29 @@ pub(super) struct Arguments {
     /// The folder that `solve` wrote
     solution: PathBuf,
     /// A table with the columns x,y,z,nx,ny,nz (scene units); other columns are kept
-    points: PathBuf,
+    #[arg(required_unless_present = "grid", conflicts_with = "grid")]
+    points: Option<PathBuf>,
     /// Where the table goes, with radiosity and irradiance added; standard output if this is left out
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridFlags,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
-    let (table, missed) = probe_table(&solution, &arguments.points)?;
+    if let Some(plane) = &arguments.grid.grid {
+        let output = arguments.output.as_deref();
+        arguments.grid.measure(&solution, plane, output)?;
+    }
+    match &arguments.points {
+        Some(points) => probe(&solution, points, arguments),
+        None => Ok(Code::Success),
+    }
+}
+
+fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Code, CliError> {
+    let (table, missed) = probe_table(solution, points)?;
     match &arguments.output {
         Some(path) => write_atomically(path, |out| out.write_all(&table))?,
         None => std::io::stdout()

@@ -1,15 +1,22 @@
 //! The terminal's view of a solve: a bar, and ctrl-C.
 
-use crate::solver::{Control, Observer, Progress};
-use indicatif::{HumanCount, ProgressBar, ProgressStyle};
+use super::say;
+use super::say::is_quiet;
+use crate::output::Moment;
+use crate::solver::{Control, Observer, Phase, Progress};
+use clap::ValueEnum;
+use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Set by ctrl-C or a termination signal.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
+
+/// Between two lines of JSON.
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// Lets ctrl-C end a solve cleanly; a second one ends the process.
 pub(super) fn catch_interrupts() {
@@ -20,7 +27,7 @@ pub(super) fn catch_interrupts() {
         eprintln!("\nstopping: writing the solution so far (once more to quit at once)");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        eprintln!("warning: ctrl-C will lose the solution: {error}");
+        say::warning(&format!("ctrl-C will lose the solution: {error}"));
     }
 }
 
@@ -29,45 +36,146 @@ pub(super) fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::SeqCst)
 }
 
-/// Shows progress, passes interrupts on, and stops the solve when a checkpoint is due.
-pub(super) struct Bar {
-    bar: ProgressBar,
-    tolerance: f64,
-    /// When the solve is to be left for a checkpoint.
-    pub due: Option<Instant>,
+/// How progress is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Look {
+    /// A bar on a terminal, nothing elsewhere
+    Auto,
+    /// One JSON object a line on standard output, in place of the table at the end
+    Json,
+    /// Nothing
+    None,
 }
 
-impl Bar {
-    /// A bar that is full when unshot over emitted power has fallen to `tolerance`; nothing is shown off a terminal.
-    pub(super) fn new(tolerance: f64) -> Self {
-        let style = ProgressStyle::with_template("{bar:24} {elapsed} {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar());
+/// Shows progress, passes interrupts on, and stops the solve when a checkpoint is due.
+pub(super) struct Watch {
+    bar: Option<ProgressBar>,
+    json: bool,
+    tolerance: f64,
+    told: Option<Instant>,
+    /// When the solve is to be left for a checkpoint.
+    pub due: Option<Instant>,
+    /// How the solve went so far.
+    pub history: Vec<Moment>,
+}
+
+impl Watch {
+    /// Watches until unshot over emitted power has fallen to `tolerance`.
+    pub(super) fn new(tolerance: f64, look: Look) -> Self {
+        let shown = look == Look::Auto && !is_quiet();
         Self {
-            bar: ProgressBar::new(STEPS).with_style(style),
+            bar: shown.then(bar),
+            json: look == Look::Json,
             tolerance: tolerance.clamp(1e-9, 0.5),
+            told: None,
             due: None,
+            history: Vec::new(),
         }
     }
 
     /// Takes the bar off the terminal.
     pub(super) fn clear(&self) {
-        self.bar.finish_and_clear();
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn show(&mut self, now: &Progress, unshot: f64) {
+        let done = self.done(now, unshot);
+        if let Some(bar) = &self.bar {
+            bar.set_position((done * STEPS as f64) as u64);
+            bar.set_message(message(now, unshot, done));
+        }
+        let recent = |told: Instant| told.elapsed() < PAUSE;
+        if self.json && !self.told.is_some_and(recent) {
+            self.told = Some(Instant::now());
+            println!("{}", line(now, unshot, done));
+        }
+    }
+
+    /// About how much of the time has passed. Unshot power falls geometrically, so its logarithm tells how far there is to go;
+    /// gathering takes about as long as the shots did.
+    fn done(&self, now: &Progress, unshot: f64) -> f64 {
+        let shot = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0);
+        match now.phase {
+            Phase::Shooting | Phase::Refining => 0.6 * shot,
+            Phase::Gathering { done, of } => 0.6 + 0.35 * f64::from(done) / f64::from(of.max(1)),
+            Phase::Estimating => 0.95,
+        }
     }
 }
 
-impl Observer for Bar {
+/// A bar that moves even where a batch of work takes long.
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {bar:24} {elapsed} {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::new(STEPS).with_style(style);
+    bar.set_message("preparing");
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+/// What it is at, how far it is, how fast, and how long it may take.
+fn message(now: &Progress, unshot: f64, done: f64) -> String {
+    let seconds = now.elapsed.as_secs_f64();
+    let at = match now.phase {
+        Phase::Shooting | Phase::Refining => {
+            format!("shot {}, {:.2}% unshot", now.shots + 1, 100.0 * unshot)
+        }
+        Phase::Gathering { done, of } => format!("gathering once more, patch {done} of {of}"),
+        Phase::Estimating => "estimating the error".to_owned(),
+    };
+    let left = match seconds > 2.0 && done > 0.02 {
+        true => format!(
+            ", about {} left",
+            HumanDuration(Duration::from_secs_f64(seconds * (1.0 - done) / done))
+        ),
+        false => String::new(),
+    };
+    let (elements, rate) = (HumanCount(now.elements as u64), rate(now));
+    format!("{at}  {elements} elements  {rate:.1} Mrays/s{left}")
+}
+
+/// Millions of rays a second.
+fn rate(now: &Progress) -> f64 {
+    now.rays as f64 / now.elapsed.as_secs_f64().max(1e-3) / 1e6
+}
+
+/// Progress for a program.
+fn line(now: &Progress, unshot: f64, done: f64) -> serde_json::Value {
+    let phase = match now.phase {
+        Phase::Shooting => "shooting",
+        Phase::Refining => "refining",
+        Phase::Gathering { .. } => "gathering",
+        Phase::Estimating => "estimating",
+    };
+    serde_json::json!({
+        "event": "progress",
+        "phase": phase,
+        "seconds": now.elapsed.as_secs_f64(),
+        "shots": now.shots,
+        "elements": now.elements,
+        "vertices": now.vertices,
+        "rays": now.rays,
+        "mrays_per_second": rate(now),
+        "unshot": unshot,
+        "done": done,
+    })
+}
+
+impl Observer for Watch {
     fn progress(&mut self, now: &Progress) -> Control {
-        let unshot = now.unshot.element_sum() / now.emitted.element_sum();
-        // Unshot power falls geometrically, so its logarithm tells how far there is to go.
-        let done = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0);
-        self.bar.set_position((done * STEPS as f64) as u64);
-        let rate = now.rays as f64 / now.elapsed.as_secs_f64().max(1e-3) / 1e6;
-        self.bar.set_message(format!(
-            "unshot {:.2}%  shot {}  {} elements  {rate:.1} Mrays/s",
-            100.0 * unshot,
-            now.shots + 1,
-            HumanCount(now.elements as u64),
-        ));
+        let emitted = now.emitted.element_sum().max(f64::MIN_POSITIVE);
+        let unshot = now.unshot.element_sum() / emitted;
+        self.show(now, unshot);
+        if matches!(now.phase, Phase::Shooting | Phase::Refining) {
+            self.history.push(Moment {
+                shots: now.shots,
+                seconds: now.elapsed.as_secs_f64(),
+                unshot,
+                elements: now.elements,
+            });
+        }
         if is_interrupted() || self.due.is_some_and(|due| Instant::now() >= due) {
             Control::Stop
         } else {

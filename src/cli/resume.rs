@@ -31,6 +31,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
+    arguments.how.begin();
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);

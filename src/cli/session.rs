@@ -2,7 +2,8 @@
 
 use super::CliError;
 use super::error::Code;
-use super::progress::{Bar, is_interrupted};
+use super::progress::{Look, Watch, is_interrupted};
+use super::say::{self, is_quiet};
 use super::solve::{How, summary, write};
 use crate::Run;
 use crate::output::write_atomically;
@@ -29,7 +30,8 @@ pub(super) struct Session<'a> {
 impl Session<'_> {
     /// Goes on to the end, or until it is interrupted, and writes what there is.
     pub fn complete(&self, mut run: Run) -> Result<Code, CliError> {
-        let mut bar = Bar::new(run.solution().report.options.tolerance);
+        let look = self.how.look();
+        let mut bar = Watch::new(run.solution().report.options.tolerance, look);
         if let Some(interval) = self.how.checkpoint {
             let took = self.save(run.solution())?;
             bar.due = Some(next(interval, took));
@@ -38,7 +40,7 @@ impl Session<'_> {
             bar.due = self.how.checkpoint.map(|interval| {
                 // A solve is worth more than its checkpoint: what cannot be saved now may be saved later.
                 let took = self.save(run.solution()).unwrap_or_else(|error| {
-                    eprintln!("warning: {error}");
+                    say::warning(&error.to_string());
                     interval
                 });
                 next(interval, took)
@@ -51,17 +53,29 @@ impl Session<'_> {
         }
         let mut solution = run.finish();
         self.warn(&solution);
-        write(&mut solution, self.output, self.how)?;
+        write(&mut solution, self.output, self.how, &bar.history)?;
         if !is_left {
             // What is in the solution now, or belongs to a run before this one.
             let _ = std::fs::remove_file(self.output.join(CHECKPOINT));
         }
         let seconds = self.started.elapsed().as_secs_f64();
-        print!("{}", summary(&solution, seconds));
+        match look {
+            Look::Json => println!("{}", self.done(&solution)?),
+            _ if is_quiet() => {}
+            _ => print!("{}", summary(&solution, seconds)),
+        }
         match solution.report.stop_reason {
             StopReason::Interrupted => Ok(Code::Interrupted),
             _ => Ok(Code::Success),
         }
+    }
+
+    /// The end for a program.
+    fn done(&self, solution: &Solution) -> Result<serde_json::Value, CliError> {
+        let report = serde_json::to_value(&solution.report);
+        let report = report.map_err(|e| CliError::System(e.to_string()))?;
+        let seconds = self.started.elapsed().as_secs_f64();
+        Ok(serde_json::json!({ "event": "done", "seconds": seconds, "report": report }))
     }
 
     /// Writes the state; says how long that took.
@@ -74,27 +88,26 @@ impl Session<'_> {
     /// What came to light in the solve.
     fn warn(&self, solution: &Solution) {
         let report = &solution.report;
-        for warning in report.warnings.iter().skip(self.known_warnings) {
-            eprintln!("warning: {warning}");
-        }
+        let known = self.known_warnings.min(report.warnings.len());
+        say::warnings(&report.warnings[known..]);
         if let Some(end) = report.meshing_ended {
             let limit = match end {
                 MeshingEnd::MaxElements => "--max-elements",
                 MeshingEnd::MemoryLimit => "--memory-limit",
             };
-            eprintln!(
-                "warning: {limit} ended the refinement after {} shots, at {} elements",
+            say::warning(&format!(
+                "{limit} ended the refinement after {} shots, at {} elements",
                 report.meshing_shots, report.elements
-            );
+            ));
         }
         let missed = report.target.as_ref().filter(|t| !t.reached);
         if let (Some(target), true) = (missed, report.stop_reason != StopReason::NoEmitter) {
             let plural = if target.rounds == 1 { "" } else { "s" };
-            eprintln!(
-                "warning: the error of {}% was not reached in {} solve{plural}",
+            say::warning(&format!(
+                "the error of {}% was not reached in {} solve{plural}",
                 100.0 * target.n_rms,
                 target.rounds
-            );
+            ));
         }
     }
 }

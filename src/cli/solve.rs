@@ -4,12 +4,16 @@ use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
 use super::memory::peak_memory;
+use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
-use super::progress::catch_interrupts;
+use super::progress::{Look, catch_interrupts};
+use super::say;
 use super::session::Session;
 use super::values::duration;
-use crate::output::{SummaryRow, remove_abandoned, summary_table, write_atomically, write_ply};
-use crate::radiometry::radiance_from_radiosity;
+use crate::output::{
+    Moment, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
+};
+use crate::radiometry::WHITE_EFFICACY;
 use crate::render::{RenderOptions, Tone};
 use crate::scene::Scene;
 use crate::solution::{Report, Solution};
@@ -26,7 +30,7 @@ pub(super) const SOLUTION: &str = "solution.rad";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A folder with a scene.toml, a .toml, or an .obj; with --from, the report's scene if left out
+    /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; with --from, the report's scene if left out
     #[arg(required_unless_present = "from")]
     scene: Option<PathBuf>,
     /// Take engine and options from the report.json of another solve, to repeat it
@@ -53,13 +57,40 @@ pub(super) struct How {
     /// Leave the pictures out
     #[arg(long)]
     pub no_pictures: bool,
+    /// Lit meshes to write beside the solution: any of glb, obj, ply and vtu, or none
+    #[arg(long, value_name = "LIST", default_value = "ply,glb,vtu")]
+    pub formats: Formats,
+    /// Leave report.html out
+    #[arg(long)]
+    pub no_html: bool,
+    /// How progress is shown
+    #[arg(long, value_enum, value_name = "LOOK", default_value = "auto")]
+    progress: Look,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
     /// Save the state at the start and then at these intervals (60 s if no TIME is given), for `radiosity resume`
     #[arg(long, value_name = "TIME", value_parser = duration, num_args = 0..=1, default_missing_value = "60")]
     pub checkpoint: Option<Duration>,
 }
 
+impl How {
+    /// How progress is shown.
+    pub(super) fn look(&self) -> Look {
+        self.progress
+    }
+
+    /// Takes note of `--quiet`.
+    pub(super) fn begin(&self) {
+        if self.quiet {
+            say::be_quiet();
+        }
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
+    arguments.how.begin();
     let model = arguments.from.as_deref().map(read_report).transpose()?;
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
@@ -122,19 +153,17 @@ pub(super) fn warn_of_another_engine(then: &Report, now: &Report) {
             of.engine.name, of.engine.version, of.engine.isa
         )
     };
-    eprintln!(
-        "warning: solved before by {}, now by {}: results may differ in their last digits",
+    say::warning(&format!(
+        "solved before by {}, now by {}: results may differ in their last digits",
         name(then),
         name(now)
-    );
+    ));
 }
 
 pub(super) fn warn(scene: &Scene) {
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    say::warnings(&scene.warnings);
     if !scene.materials.iter().any(|m| m.emits()) {
-        eprintln!("warning: no surface emits light; everything will be black");
+        say::warning("no surface emits light; everything will be black");
     }
 }
 
@@ -155,15 +184,25 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
 }
 
 /// Writes all results.
-pub(super) fn write(solution: &mut Solution, folder: &Path, how: &How) -> Result<(), CliError> {
+pub(super) fn write(
+    solution: &mut Solution,
+    folder: &Path,
+    how: &How,
+    history: &[Moment],
+) -> Result<(), CliError> {
     let started = Instant::now();
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     let lit = solution.lit_mesh();
-    let tone = Tone::for_mesh(&lit);
-    let errors = solution.triangle_errors(&lit);
-    write_ply(&folder.join("solution.ply"), &lit, errors.as_deref(), |v| {
-        tone.colour(radiance_from_radiosity(v.radiosity))
-    })?;
+    let exporter = Exporter {
+        solution,
+        lit: &lit,
+        tone: Tone::for_mesh(&lit),
+        efficacy: WHITE_EFFICACY,
+    };
+    for format in &how.formats.0 {
+        let name = format!("solution.{}", format.extension());
+        exporter.write(*format, &folder.join(name))?;
+    }
     if !how.no_pictures {
         for (number, camera) in solution.cameras.iter().enumerate() {
             // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
@@ -187,7 +226,39 @@ pub(super) fn write(solution: &mut Solution, folder: &Path, how: &How) -> Result
     let report =
         serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
     write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
+    if !how.no_html {
+        write_page(solution, folder, how, history)?;
+    }
     Ok(())
+}
+
+/// `report.html`, with the first camera's pictures.
+fn write_page(
+    solution: &Solution,
+    folder: &Path,
+    how: &How,
+    history: &[Moment],
+) -> Result<(), CliError> {
+    let camera = solution.cameras.first().map_or("", |camera| &camera.name);
+    let mut pictures = Vec::new();
+    for (file, what) in [("shaded.png", "light"), ("mesh.png", "mesh")] {
+        if !how.no_pictures {
+            let path = folder.join(file);
+            let refused = |e| CliError::System(format!("cannot read {}: {e}", path.display()));
+            let png = std::fs::read(&path).map_err(refused)?;
+            pictures.push((format!("{camera}: {what}"), png));
+        }
+    }
+    let mut files = vec![SOLUTION.to_owned(), "report.json".to_owned()];
+    let meshes = how.formats.0.iter();
+    files.extend(meshes.map(|format| format!("solution.{}", format.extension())));
+    let page = Page {
+        report: &solution.report,
+        history,
+        pictures: &pictures,
+        files: &files,
+    };
+    Ok(write_html(&folder.join("report.html"), &page)?)
 }
 
 /// The paper's Table 1 for this solve, and what the table leaves out.

@@ -4,20 +4,30 @@
 //! ([`WriteError`]). Imports `solution` and `matrix`: pictures come in as plain rows of pixels.
 
 mod atomic;
+mod blocks;
 mod exr;
+mod glb;
+mod html;
 mod matrix;
+mod obj;
+mod picture;
+mod plot;
 mod ply;
-mod png;
 mod table;
+mod vtu;
 
 pub use atomic::{WriteError, remove_abandoned, write_atomically};
 pub use exr::write_exr;
+pub use glb::{GlbFacts, write_glb};
+pub use html::{Moment, Page, write_html};
 pub use matrix::{
     Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,
 };
+pub use obj::write_obj;
+pub use picture::write_png;
 pub use ply::write_ply;
-pub use png::write_png;
 pub use table::{SummaryRow, summary_table};
+pub use vtu::{VtuFacts, write_vtu};
 
 use std::io;
 

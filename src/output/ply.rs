@@ -1,5 +1,6 @@
 //! The solution as a binary PLY file, for viewers and for baking.
 
+use super::blocks::needs_double;
 use super::{WriteError, write_atomically};
 use crate::solution::{LitMesh, LitVertex};
 use glam::{DVec3, Vec3};
@@ -80,21 +81,6 @@ fn header(mesh: &LitMesh, double: bool, errors: bool) -> String {
         header += "property float irradiance_error\n";
     }
     header + "end_header\n"
-}
-
-/// Whether rounding to `f32` would move some position by more than 1e-5 of the extent of them all.
-fn needs_double(positions: &[DVec3]) -> bool {
-    let (low, high) = positions.iter().fold(
-        (DVec3::INFINITY, DVec3::NEG_INFINITY),
-        |(low, high), &position| (low.min(position), high.max(position)),
-    );
-    let tolerance = 1e-5 * (high - low).max_element();
-    positions.iter().any(|position| {
-        (position.as_vec3().as_dvec3() - position)
-            .abs()
-            .max_element()
-            > tolerance
-    })
 }
 
 fn write_position(out: &mut impl Write, position: DVec3, double: bool) -> io::Result<()> {

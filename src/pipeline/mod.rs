@@ -1,9 +1,11 @@
 //! From a scene to its solution: mesh, visibility, solve, report. [`solve`] does it in one call, a [`Run`] in as many as one likes.
 
+mod measure;
 mod report;
 mod run;
 mod target;
 
+pub use measure::irradiance_at;
 pub use run::Run;
 pub use target::Target;
 

@@ -9,6 +9,8 @@
 //! threads. Imports `radiometry`, `solution`, `scene` and the trait of `visibility`.
 
 mod cells;
+mod digits;
+mod false_colour;
 mod frame;
 mod lens;
 mod lines;
@@ -20,6 +22,7 @@ mod tone;
 mod trace;
 mod view;
 
+pub use false_colour::{colour as false_colour, false_colours};
 pub use options::RenderOptions;
 pub use picture::Picture;
 pub use tone::Tone;

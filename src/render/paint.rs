@@ -3,8 +3,8 @@
 use super::lens::Lens;
 use super::lines::{Pen, Stroke};
 use super::sight::Seen;
-use super::tone::{Tone, linear, srgb};
-use crate::radiometry::radiance_from_radiosity;
+use super::tone::Tone;
+use crate::radiometry::{linear, radiance_from_radiosity, srgb};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Shade of lines on the light surfaces of the wireframe, and of what is behind them.

@@ -1,6 +1,6 @@
 //! From radiance to what a screen shows.
 
-use crate::radiometry::{Spectrum, radiance_from_radiosity};
+use crate::radiometry::{LUMINANCE_WEIGHTS, Spectrum, radiance_from_radiosity, srgb};
 use crate::solution::LitMesh;
 use glam::Vec3;
 
@@ -99,7 +99,7 @@ impl Metered {
 
     /// Luminance of the leaving radiance, by the weights of Rec. 709.
     fn luminance(&self) -> f64 {
-        f64::from(radiance_from_radiosity(self.radiosity).dot(Vec3::new(0.2126, 0.7152, 0.0722)))
+        f64::from(radiance_from_radiosity(self.radiosity).dot(LUMINANCE_WEIGHTS))
     }
 }
 
@@ -114,24 +114,6 @@ fn log_mean<'a>(samples: impl Iterator<Item = &'a Metered> + Clone) -> Option<f6
         )
     });
     (weight > 0.0).then(|| (sum / weight).exp())
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), for 0 to 1.
-pub(super) fn srgb(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
-}
-
-/// The inverse of [`srgb`].
-pub(super) fn linear(srgb: f32) -> f32 {
-    if srgb <= 0.040_45 {
-        srgb / 12.92
-    } else {
-        ((srgb + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 /// `value` (0 to 1) in 8 bits. What lies between two steps alternates between them in an 8 x 8 pattern (Bayer's), so
@@ -166,7 +148,10 @@ mod tests {
             (1.0, 1.0),
         ] {
             assert!((srgb(linear) - encoded).abs() < 1e-5, "{linear}");
-            assert!((super::linear(encoded) - linear).abs() < 1e-4, "{encoded}");
+            assert!(
+                (crate::radiometry::linear(encoded) - linear).abs() < 1e-4,
+                "{encoded}"
+            );
         }
     }
 

@@ -1,21 +1,22 @@
 //! Cameras from the settings, judged; and one of the whole scene where there are none.
 
-use super::settings::{CameraSettings, Settings};
+use super::settings::{CameraSettings, Settings, UpAxis};
 use super::text::{TextFile, quote};
 use super::{Camera, SceneError, limits};
 use glam::DVec3;
 
-const DEFAULT_FOV: f64 = 45.0;
-const DEFAULT_SIZE: (u32, u32) = (1024, 768);
+pub(super) const DEFAULT_FOV: f64 = 45.0;
+pub(super) const DEFAULT_SIZE: (u32, u32) = (1024, 768);
 
 /// The cameras of a `scene.toml`.
 pub(super) fn from_settings(
     file: &TextFile,
     settings: &Settings,
+    axis: UpAxis,
 ) -> Result<Vec<Camera>, SceneError> {
     let mut cameras: Vec<Camera> = Vec::new();
     for described in &settings.camera {
-        let camera = judge(described.get_ref())
+        let camera = judge(described.get_ref(), axis)
             .and_then(
                 |camera| match cameras.iter().any(|other| other.name == camera.name) {
                     true => Err((
@@ -37,7 +38,7 @@ pub(super) fn from_settings(
     Ok(cameras)
 }
 
-fn judge(described: &CameraSettings) -> Result<Camera, (String, String)> {
+fn judge(described: &CameraSettings, axis: UpAxis) -> Result<Camera, (String, String)> {
     let fault = |found: String, expected: &str| Err((found, expected.to_owned()));
     if !names_a_file(&described.name) {
         return fault(
@@ -47,7 +48,11 @@ fn judge(described: &CameraSettings) -> Result<Camera, (String, String)> {
     }
     let eye = point("eye", described.eye)?;
     let look_at = point("look_at", described.look_at)?;
-    let up = point("up", described.up.unwrap_or([0.0, 1.0, 0.0]))?;
+    let vertical = match axis {
+        UpAxis::Y => [0.0, 1.0, 0.0],
+        UpAxis::Z => [0.0, 0.0, 1.0],
+    };
+    let up = point("up", described.up.unwrap_or(vertical))?;
     let sight = look_at - eye;
     // Distances that the coordinates can tell from none.
     if sight.length() <= 1e-12 * eye.abs().max_element() {
@@ -70,11 +75,15 @@ fn judge(described: &CameraSettings) -> Result<Camera, (String, String)> {
     if let Some(exposure) = described.exposure.filter(|exposure| !exposure.is_finite()) {
         return fault(format!("exposure = {exposure}"), "a finite number of stops");
     }
+    let turned = |point| match axis {
+        UpAxis::Y => point,
+        UpAxis::Z => UpAxis::turned(point),
+    };
     Ok(Camera {
         name: described.name.clone(),
-        eye,
-        look_at,
-        up,
+        eye: turned(eye),
+        look_at: turned(look_at),
+        up: turned(up),
         horizontal_fov: fov,
         width: pixels("width", described.width, DEFAULT_SIZE.0)?,
         height: pixels("height", described.height, DEFAULT_SIZE.1)?,
@@ -83,7 +92,7 @@ fn judge(described: &CameraSettings) -> Result<Camera, (String, String)> {
 }
 
 /// Camera names become part of the pictures' file names.
-fn names_a_file(name: &str) -> bool {
+pub(super) fn names_a_file(name: &str) -> bool {
     let forbidden = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
     !name.trim().is_empty() && !name.starts_with('.') && !name.contains(forbidden)
 }

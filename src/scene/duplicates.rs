@@ -1,6 +1,6 @@
 //! Polygons that a file has twice, which would shine twice.
 
-use super::obj::Polygons;
+use super::polygons::Polygons;
 use super::weld::MixingHasher;
 use rayon::slice::ParallelSliceMut;
 use std::hash::Hasher;

@@ -1,11 +1,9 @@
 //! From a path to a [`Scene`]: finds the files, reads them in order and puts together what they say.
 
-use super::settings::{self, Settings, SidesRule};
+use super::geometry::{self, ENDINGS, Format, Geometry, Reading};
+use super::settings::{self, Settings, SidesRule, UpAxis};
 use super::text::{TextFile, quote};
-use super::{
-    NamedScene, Names, Scene, SceneError, cameras, duplicates, materials, mtl, obj, obj_guard,
-    sides, split,
-};
+use super::{NamedScene, Names, Scene, SceneError, cameras, duplicates, materials, sides, split};
 use std::path::{Component, Path, PathBuf};
 
 const SCENE_FILE: &str = "scene.toml";
@@ -13,8 +11,8 @@ const SCENE_FILE: &str = "scene.toml";
 impl Scene {
     /// Reads a scene.
     ///
-    /// `path` is a folder with a `scene.toml`, a `.toml` file with the same keys, or a bare `.obj` file, which
-    /// is then in metres. Polygons are split into triangles and convex planar quads; what cannot be used is
+    /// `path` is a folder with a `scene.toml`, a `.toml` file with the same keys, or a bare `.obj`, `.glb`, `.gltf` or
+    /// `.ply` file, which is then in metres with y up. Polygons are split into triangles and convex planar quads; what cannot be used is
     /// left out with one of [`Scene::warnings`].
     ///
     /// # Errors
@@ -43,50 +41,45 @@ fn load(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
         let scene = path.join(SCENE_FILE);
         if !scene.is_file() {
             let found = format!("a folder without {SCENE_FILE}");
-            return Err(SceneError::new(
-                path,
-                None,
-                found,
-                "a folder with one, a .toml or an .obj file",
-            ));
+            let expected = format!("a folder with one, a .toml, {ENDINGS} file");
+            return Err(SceneError::new(path, None, found, expected));
         }
         return load_toml(&scene, auto);
     }
+    let expected = format!("a folder with a {SCENE_FILE}, a .toml, {ENDINGS} file");
     if !path.exists() {
-        let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
-        return Err(SceneError::new(
-            path,
-            None,
-            "no such file or folder",
-            expected,
-        ));
+        let found = "no such file or folder";
+        return Err(SceneError::new(path, None, found, expected));
     }
     if has_extension(path, "toml") {
-        load_toml(path, auto)
-    } else if has_extension(path, "obj") {
-        assemble(path, None, auto)
-    } else {
-        let expected = format!("a folder with a {SCENE_FILE}, a .toml or an .obj file");
-        Err(SceneError::new(
+        return load_toml(path, auto);
+    }
+    match Format::of(path) {
+        Some(format) => assemble(path, format, None, auto),
+        None => Err(SceneError::new(
             path,
             None,
             "a file of another kind",
             expected,
-        ))
+        )),
     }
 }
 
 fn load_toml(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
     let file = TextFile::read(path, "a scene's .toml file")?;
     let settings = settings::read(&file)?;
-    let geometry = geometry_path(&file, &settings)?;
-    assemble(&geometry, Some((&file, &settings)), auto)
+    let (geometry, format) = geometry_path(&file, &settings)?;
+    assemble(&geometry, format, Some((&file, &settings)), auto)
 }
 
-/// The OBJ file that the settings name: it exists, and below the folder of the settings.
-fn geometry_path(file: &TextFile, settings: &Settings) -> Result<PathBuf, SceneError> {
+/// The geometry file that the settings name: it exists, and below the folder of the settings.
+fn geometry_path(file: &TextFile, settings: &Settings) -> Result<(PathBuf, Format), SceneError> {
     let Some(geometry) = &settings.geometry else {
-        return Err(file.error(None, "no `geometry`", "`geometry = \"FILE.obj\"`"));
+        return Err(file.error(
+            None,
+            "no `geometry`",
+            "`geometry = \"FILE\"`, an .obj, .glb, .gltf or .ply file",
+        ));
     };
     let named = Path::new(geometry.get_ref());
     let line = file.line_at(geometry.span().start);
@@ -98,19 +91,18 @@ fn geometry_path(file: &TextFile, settings: &Settings) -> Result<PathBuf, SceneE
             "a relative path that stays in the scene's folder",
         ));
     }
-    if !has_extension(named, "obj") {
-        return Err(file.error(line, found(""), "an .obj file"));
-    }
+    let format = Format::of(named)
+        .ok_or_else(|| file.error(line, found(""), format!("an {ENDINGS} file")))?;
     let path = file.path.parent().unwrap_or(Path::new("")).join(named);
     if !path.is_file() {
         let expected = format!("a file at {}", path.display());
         return Err(file.error(line, found(", which does not exist"), expected));
     }
-    Ok(path)
+    Ok((path, format))
 }
 
 /// Whether a relative path never leaves the folder that it starts from.
-fn stays_below(path: &Path) -> bool {
+pub(super) fn stays_below(path: &Path) -> bool {
     let mut depth = 0i32;
     path.components().all(|component| {
         depth += match component {
@@ -131,81 +123,86 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 /// Reads the geometry and joins it with the settings, if there are any.
 fn assemble(
     path: &Path,
+    format: Format,
     settings: Option<(&TextFile, &Settings)>,
     auto: SidesRule,
 ) -> Result<NamedScene, SceneError> {
-    // Check the OBJ file, read its materials, then its polygons.
     let mut warnings = Vec::new();
-    let file = TextFile::read(path, "an .obj file")?;
-    let mut checked = obj_guard::check(&file)?;
-    let library = mtl::read(&file, &checked, &mut warnings)?;
-    let materials = materials::decide(&library, settings)?;
-    materials::warn_of_defaults(path, &library, settings.map(|(_, s)| s), &mut warnings);
+    let reading = match settings {
+        Some((file, settings)) => settings.reading(file)?,
+        None => Reading::default(),
+    };
+    let mut geometry = geometry::read(path, format, reading, &mut warnings)?;
+    let up = settings.and_then(|(_, s)| s.up).unwrap_or_default();
+    if up == UpAxis::Z {
+        geometry.turn_up(UpAxis::turned);
+    }
+    let Geometry {
+        polygons, library, ..
+    } = &geometry;
+    let materials = materials::decide(library, settings)?;
+    materials::warn_of_defaults(path, library, settings.map(|(_, s)| s), &mut warnings);
     materials::warn_of_perfect(path, &materials, &mut warnings);
-    checked
-        .unknown
-        .report(&mut warnings, path, "line", "of unknown kind skipped");
-    let (groups, group_of) = (
-        std::mem::take(&mut checked.groups),
-        std::mem::take(&mut checked.polygon_groups),
-    );
-    let polygons = obj::read(&file, checked, &library)?;
 
     // Split what is not a triangle or a convex planar quad, and decide which sides radiate.
-    let repeated = duplicates::find(&polygons);
-    let mut surfaces = split::split(path, &polygons, &repeated, &mut warnings);
+    let repeated = duplicates::find(polygons);
+    let mut surfaces = split::split(path, polygons, &repeated, &mut warnings);
     if surfaces.is_empty() {
-        let found = match polygons.len() {
-            0 => "no polygons".to_owned(),
-            1 => "one polygon, which cannot be used".to_owned(),
-            n => format!("{n} polygons, none of which can be used"),
-        };
-        return Err(file.error(None, found, "at least one polygon with an area"));
+        return Err(nothing_usable(path, polygons.len()));
     }
-    let rules: Vec<SidesRule> = materials
-        .sides
-        .iter()
-        .map(|rule| {
-            if *rule == SidesRule::Auto {
-                auto
-            } else {
-                *rule
-            }
-        })
-        .collect();
-    sides::decide(&polygons, &repeated, &rules, &mut surfaces);
-    let names = Names {
-        file: path.to_path_buf(),
-        groups,
-        group_of,
-        lines: polygons.lines.clone(),
+    let stated = |rule: &SidesRule| {
+        if *rule == SidesRule::Auto {
+            auto
+        } else {
+            *rule
+        }
     };
+    let rules: Vec<SidesRule> = materials.sides.iter().map(stated).collect();
+    sides::decide(polygons, &repeated, &rules, &mut surfaces);
 
     let (metres_per_unit, cameras) = match settings {
         Some((file, settings)) => (
             settings.metres_per_unit(file)?,
-            cameras::from_settings(file, settings)?,
+            cameras::from_settings(file, settings, up)?,
         ),
         None => (1.0, Vec::new()),
     };
     let name = settings.and_then(|(_, s)| s.name.clone());
+    let names = Names {
+        file: path.to_path_buf(),
+        groups: geometry.groups,
+        group_of: geometry.group_of,
+        lines: geometry.polygons.lines.clone(),
+    };
     let mut scene = Scene {
-        name: name.unwrap_or_else(|| {
-            path.file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned()
-        }),
+        name: name.unwrap_or_else(|| stem(path)),
         metres_per_unit,
-        input_polygons: polygons.len(),
-        vertices: polygons.positions,
+        input_polygons: geometry.polygons.len(),
+        vertices: geometry.polygons.positions,
         surfaces,
         materials: materials.list,
         cameras,
         warnings,
     };
     if scene.cameras.is_empty() {
+        scene.cameras = geometry.cameras;
+    }
+    if scene.cameras.is_empty() {
         scene.cameras.push(cameras::overview(scene.bounds()));
     }
     Ok(NamedScene { scene, names })
+}
+
+fn nothing_usable(path: &Path, polygons: usize) -> SceneError {
+    let found = match polygons {
+        0 => "no polygons".to_owned(),
+        1 => "one polygon, which cannot be used".to_owned(),
+        n => format!("{n} polygons, none of which can be used"),
+    };
+    SceneError::new(path, None, found, "at least one polygon with an area")
+}
+
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
 }

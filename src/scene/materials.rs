@@ -35,9 +35,7 @@ pub(super) fn decide(
     if let Some((file, settings)) = settings {
         refuse_unknown_names(file, settings, library)?;
     }
-    let scene_rule = settings
-        .and_then(|(_, s)| s.sides)
-        .unwrap_or(SidesRule::Auto);
+    let scene_rule = settings.and_then(|(_, s)| s.sides);
     let mut materials = Materials {
         list: Vec::new(),
         sides: Vec::new(),
@@ -48,11 +46,14 @@ pub(super) fn decide(
             settings.and_then(|(file, s)| Some((file, s.material.get(&entry.name)?.get_ref())));
         let rule = over.and_then(|(_, material)| material.sides);
         let (material, perfect) = material(entry, over)?;
-        if perfect {
-            materials.perfect.push(quote(&material.name));
+        let name = quote(&material.name);
+        // Materials that differ in the colour of a texture share a name.
+        if perfect && !materials.perfect.contains(&name) {
+            materials.perfect.push(name);
         }
         materials.list.push(material);
-        materials.sides.push(rule.unwrap_or(scene_rule));
+        let rule = rule.or(scene_rule).or(entry.sides);
+        materials.sides.push(rule.unwrap_or(SidesRule::Auto));
     }
     Ok(materials)
 }
@@ -170,7 +171,7 @@ fn stated(
         Some(Stated {
             channels: DVec3::from_array(channels.get_ref().0),
             file: file.path.clone(),
-            line: file.line_at(channels.span().start),
+            line: Some(file.line_at(channels.span().start)),
         })
     });
     overriding.or_else(|| own.clone())

@@ -4,13 +4,15 @@
 //!
 //! # The scene file
 //!
-//! A scene is a Wavefront OBJ file, its MTL files, and a `scene.toml` for what those cannot say. All keys but
-//! `geometry` may be left out.
+//! A scene is a geometry file (Wavefront OBJ with its MTL files, glTF 2.0 or PLY) and a `scene.toml` for what that cannot
+//! say. All keys but `geometry` may be left out.
 //!
 //! ```toml
 //! name = "Cornell box"          # for reports; else the stem of the geometry's file
 //! geometry = "cornell-box.obj"  # in the folder of this file, or below
 //! unit = "mm"                   # m (default), cm, mm, in or ft; or metres_per_unit = 0.001
+//! up = "y"                      # the axis of the file that points up: y (default) or z
+//! point_light_radius = 0.05     # for glTF's lights without a surface: see below
 //! sides = "auto"                # front, both, or auto (default): see below
 //!
 //! [material.white]              # overrides what the MTL file says
@@ -33,6 +35,21 @@
 //! becomes 0.999 with a warning, so that light dies out; more than 1 is refused. Polygons without
 //! a material get the one named `default`.
 //!
+//! # glTF and PLY
+//!
+//! By the standard glTF is in metres with y up; emission is luminance in cd/m², which becomes radiance at 179 lm/W
+//! ([`WHITE_EFFICACY`](crate::radiometry::WHITE_EFFICACY)). The base colour is the reflectance; under a texture, its mean over each
+//! polygon. `doubleSided` materials radiate from both sides, others from the front; double-sided emitters that are not the skin of a
+//! solid shine from both sides. Perspective cameras are taken over unless the scene file has some. Lights without a
+//! surface (`KHR_lights_punctual`) are refused, unless `point_light_radius` (in scene units) asks for spheres of the same
+//! flux in the place of points, and squares of the same intensity along the axis in that of spots; 0 leaves them out.
+//! Consecutive triangles that make a flat, convex quad are one polygon, as exporters cut quads in two. Metals are taken as
+//! diffuse, transparent materials as opaque.
+//!
+//! PLY has no unit, no up axis and no materials: metres and y unless the scene file says otherwise, and the material `default`.
+//!
+//! # Sides
+//!
 //! `auto` makes closed, consistently oriented sets of polygons radiate from the front, all others from both
 //! sides. Emitted light leaves the front in every case.
 //!
@@ -47,6 +64,8 @@ mod cameras;
 mod compare;
 mod duplicates;
 mod error;
+mod geometry;
+mod gltf;
 mod limits;
 mod load;
 mod materials;
@@ -54,7 +73,9 @@ mod mtl;
 mod names;
 mod obj;
 mod obj_guard;
+mod ply;
 mod polygon;
+mod polygons;
 mod settings;
 mod sides;
 mod split;

@@ -5,6 +5,7 @@
 
 use super::SceneError;
 use super::obj_guard::{CheckedObj, UsedMaterial, rest_of};
+use super::settings::SidesRule;
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
 use glam::DVec3;
@@ -32,8 +33,10 @@ pub(super) struct Entry {
     pub emitted_radiance: Option<Stated>,
     /// The polygons that use it.
     pub polygons: Tally,
-    /// Whether any MTL file defines it.
+    /// Whether any file defines it.
     pub defined: bool,
+    /// Which sides radiate, if the file says it.
+    pub sides: Option<SidesRule>,
 }
 
 /// Three numbers, not yet judged, and where they stand.
@@ -41,13 +44,22 @@ pub(super) struct Entry {
 pub(super) struct Stated {
     pub channels: DVec3,
     pub file: PathBuf,
-    pub line: usize,
+    pub line: Option<usize>,
 }
 
 /// The name under which polygons without a material find one, and can be given one in a `scene.toml`.
-const DEFAULT_NAME: &str = "default";
+pub(super) const DEFAULT_NAME: &str = "default";
 
 impl Library {
+    /// A library of materials that do not come from MTL files.
+    pub fn new(entries: Vec<Entry>, default: Option<usize>) -> Self {
+        Self {
+            entries,
+            default,
+            tobj: Vec::new(),
+        }
+    }
+
     /// The name of the material of polygons that name none.
     pub fn default_name(&self) -> Option<&String> {
         self.default.map(|index| &self.entries[index].name)
@@ -161,6 +173,7 @@ impl Scan {
             emitted_radiance: None,
             polygons: Tally::default(),
             defined,
+            sides: None,
         };
         self.index.insert(name.to_owned(), self.entries.len());
         self.entries.push(entry);
@@ -205,7 +218,7 @@ impl Scan {
                     let stated = Stated {
                         channels,
                         file: file.path.clone(),
-                        line,
+                        line: Some(line),
                     };
                     self.state(current, keyword, stated)
                         .map_err(|found| file.error(line, found, "`newmtl NAME` first"))?;

@@ -1,7 +1,9 @@
 //! The keys of a `scene.toml`, with the lines where they stand.
 
 use super::SceneError;
+use super::geometry::Reading;
 use super::text::{TextFile, quote};
+use glam::DVec3;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use std::collections::BTreeMap;
@@ -16,11 +18,29 @@ pub(super) struct Settings {
     pub geometry: Option<Spanned<String>>,
     pub unit: Option<Spanned<String>>,
     pub metres_per_unit: Option<Spanned<f64>>,
+    pub up: Option<UpAxis>,
+    pub point_light_radius: Option<Spanned<f64>>,
     pub sides: Option<SidesRule>,
     #[serde(default)]
     pub material: BTreeMap<String, Spanned<MaterialSettings>>,
     #[serde(default)]
     pub camera: Vec<Spanned<CameraSettings>>,
+}
+
+/// The axis that points up in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum UpAxis {
+    #[default]
+    Y,
+    Z,
+}
+
+impl UpAxis {
+    /// A point of a file with z up in a scene with y up: a quarter turn about the x axis.
+    pub fn turned(point: DVec3) -> DVec3 {
+        DVec3::new(point.x, point.z, -point.y)
+    }
 }
 
 /// How the sides of surfaces are chosen.
@@ -110,6 +130,19 @@ pub(super) fn read(file: &TextFile) -> Result<Settings, SceneError> {
 }
 
 impl Settings {
+    /// How the geometry file is to be read.
+    pub fn reading(&self, file: &TextFile) -> Result<Reading, SceneError> {
+        let radius = self.point_light_radius.as_ref();
+        if let Some(wrong) = radius.filter(|radius| !(0.0..1e30).contains(radius.get_ref())) {
+            let found = format!("point_light_radius = {}", wrong.get_ref());
+            let line = file.line_at(wrong.span().start);
+            return Err(file.error(line, found, "a radius, or 0 to leave such lights out"));
+        }
+        Ok(Reading {
+            point_light_radius: radius.map(|radius| *radius.get_ref()),
+        })
+    }
+
     /// The length of the scene's unit in metres; 1 where the file says nothing.
     pub fn metres_per_unit(&self, file: &TextFile) -> Result<f64, SceneError> {
         match (&self.unit, &self.metres_per_unit) {

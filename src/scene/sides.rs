@@ -6,7 +6,7 @@
 //! direction as in the other. Each time once, for an ordinary solid; twice where two solids touch along
 //! an edge, or where a sheet is modelled as two coincident faces back to back.
 
-use super::obj::Polygons;
+use super::polygons::Polygons;
 use super::settings::SidesRule;
 use super::{Sides, Surface};
 use rayon::slice::ParallelSliceMut;
@@ -44,7 +44,7 @@ struct EdgeUse {
 /// For each polygon whether it belongs to a closed, consistently oriented set.
 ///
 /// Polygons without area take part, since they fill the cracks that they were made for.
-fn closed(polygons: &Polygons, repeated: &[bool]) -> Vec<bool> {
+pub(super) fn closed(polygons: &Polygons, repeated: &[bool]) -> Vec<bool> {
     let mut uses = edge_uses(polygons, repeated);
     uses.par_sort_unstable();
     let mut sets = DisjointSets::new(polygons.len());

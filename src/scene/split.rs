@@ -1,7 +1,7 @@
 //! Polygons as files have them become triangles and convex planar quads.
 
-use super::obj::Polygons;
 use super::polygon::{doubled_area_vector, has_no_area, is_planar, is_strictly_convex};
+use super::polygons::Polygons;
 use super::triangulate::{self, minimum_angle};
 use super::warnings::Tally;
 use super::{Corners, Sides, Surface};
@@ -37,7 +37,7 @@ pub(super) fn split(
     let mut corners: Vec<u32> = Vec::new();
     let mut positions: Vec<DVec3> = Vec::new();
     for (polygon, repeated) in repeated.iter().enumerate() {
-        let line = polygons.lines[polygon] as usize;
+        let line = polygons.line(polygon);
         if *repeated {
             repetitions.add(line);
             continue;

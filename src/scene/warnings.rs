@@ -10,7 +10,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Notes one more at `line`.
+    /// Notes one more at `line`, 0 if the file has no lines.
     pub fn add(&mut self, line: usize) {
         if self.count == 0 {
             self.first_line = line;
@@ -23,15 +23,12 @@ impl Tally {
         if self.count == 0 {
             return;
         }
-        let (file, line, plural) = (
-            file.display(),
-            self.first_line,
-            if self.count == 1 { "" } else { "s" },
-        );
-        let first = if self.count == 1 { "" } else { " (first here)" };
-        warnings.push(format!(
-            "{file}:{line}: {} {noun}{plural} {what}{first}",
-            self.count
-        ));
+        let (file, count) = (file.display(), self.count);
+        let plural = if count == 1 { "" } else { "s" };
+        warnings.push(match (self.first_line, count) {
+            (0, _) => format!("{file}: {count} {noun}{plural} {what}"),
+            (line, 1) => format!("{file}:{line}: 1 {noun} {what}"),
+            (line, _) => format!("{file}:{line}: {count} {noun}s {what} (first here)"),
+        });
     }
 }

@@ -6,11 +6,13 @@ mod conform;
 mod file;
 mod format_1;
 mod lit_mesh;
+mod plane;
 mod probe;
 mod report;
 
 pub use file::SolutionError;
 pub use lit_mesh::{LitMesh, LitTriangle, LitVertex};
+pub use plane::{Levels, Plane};
 pub use probe::{MATCH, Probe, Prober};
 pub use report::{EngineReport, PowerReport, Report, Seconds, TargetReport};
 

@@ -17,7 +17,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// How much finer the thresholds ε_fe and ε_fd of the second look are.
-const FINER: f64 = 1.0 / 8.0;
+pub(super) const FINER: f64 = 1.0 / 8.0;
 
 /// The estimated error of a solution, from points spread over all that receives light.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -4,6 +4,7 @@ use super::audit::Span;
 use super::escape::Lost;
 use super::feelers::Feeler;
 use super::light::{Light, Sign};
+use super::observer::Phase;
 use super::source::source_from;
 use crate::form_factor::{DEEPEST, Gather, Source};
 use crate::mesh::Mesh;
@@ -95,6 +96,19 @@ pub(super) struct Gathering {
 }
 
 impl Course {
+    /// What is done next, for who watches.
+    pub(super) fn phase(&self, mesh: &Mesh) -> Phase {
+        match &self.stage {
+            Stage::Shooting => Phase::Shooting,
+            Stage::Refining(_) => Phase::Refining,
+            Stage::Gathering(so_far) => Phase::Gathering {
+                done: so_far.next,
+                of: mesh.patches.len() as u32,
+            },
+            Stage::Finished => Phase::Estimating,
+        }
+    }
+
     /// Goes on with shooting if all was shot: the options have become stricter, or the emitters are others.
     pub fn reopen(&mut self) {
         if matches!(self.stage, Stage::Finished | Stage::Gathering(_)) {

@@ -3,9 +3,29 @@
 use crate::radiometry::Power;
 use std::time::Duration;
 
+/// What a solve is at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Shots.
+    Shooting,
+    /// Splitting elements after a shot.
+    Refining,
+    /// All light once more, patch by patch.
+    Gathering {
+        /// Patches whose light is in.
+        done: u32,
+        /// Patches in all.
+        of: u32,
+    },
+    /// Nothing but the estimate of the error.
+    Estimating,
+}
+
 /// Where a solve is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
+    /// What it is at.
+    pub phase: Phase,
     /// Shots that are complete.
     pub shots: u64,
     /// Shots that tested the mesh.

@@ -200,6 +200,7 @@ impl<'a> Solver<'a> {
         let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
         let unshot: Power = self.unshot_powers().iter().sum();
         Progress {
+            phase: self.course.phase(&self.mesh),
             shots: self.course.shots,
             meshing_shots: self.course.meshing_shots,
             elements: self.mesh.elements.len() - inner,

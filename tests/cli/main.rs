@@ -1,13 +1,17 @@
 //! The command: what it writes, what it says, and the code with which it ends.
 
 mod damaged;
+mod exporting;
+mod grids;
 mod interrupted;
 mod matrices;
+mod pages;
 mod probing;
 mod refused;
 mod rendering;
 mod resuming;
 mod solving;
+mod terminal;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

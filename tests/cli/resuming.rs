@@ -72,7 +72,14 @@ fn killed_at_any_moment_a_solve_resumes_to_the_same_bits() {
     assert!(bits(&pieces) == bits(&whole), "after {kills} kills");
     // What the kills have left half-written is cleared away by whoever comes next.
     run(&[&solve, &[text(&pieces)], &DRAFT]).assert_success();
-    let expected = ["report.json", "solution.ply", "solution.rad"];
+    let expected = [
+        "report.html",
+        "report.json",
+        "solution.glb",
+        "solution.ply",
+        "solution.rad",
+        "solution.vtu",
+    ];
     assert_eq!(names(&pieces), expected);
 }
 

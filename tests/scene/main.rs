@@ -2,7 +2,10 @@
 
 mod bundled;
 mod formats;
+mod gltf;
+mod gltf_refused;
 mod mutations;
+mod ply;
 mod refused;
 mod refused_settings;
 mod sides;

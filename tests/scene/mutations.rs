@@ -80,8 +80,8 @@ const WORDS: [&[u8]; 30] = [
     b"\0",
 ];
 
-fn mutate(text: &str, random: &mut Random) -> Vec<u8> {
-    let mut bytes = text.as_bytes().to_vec();
+fn mutate(text: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = text.to_vec();
     for _ in 0..1 + random.below(6) {
         let begin = random.below(bytes.len() + 1);
         let end = (begin + random.below(8)).min(bytes.len());
@@ -98,7 +98,7 @@ fn mutate(text: &str, random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-fn assert_sound(scene: &Scene) {
+pub fn assert_sound(scene: &Scene) {
     assert!(scene.vertices.iter().all(|position| position.is_finite()));
     assert!(!scene.surfaces.is_empty() && !scene.cameras.is_empty());
     for surface in &scene.surfaces {
@@ -132,6 +132,26 @@ fn assert_sound(scene: &Scene) {
     assert!(low.is_finite() && high.is_finite());
 }
 
+/// Loads the scene with its file `name` mutated, so many times; tells how often that was accepted.
+pub fn damage(files: &Files, name: &str, content: &[u8], rounds: usize) -> usize {
+    let mut random = Random(2004);
+    let path = files.0.path().join(name);
+    let once = |_: &usize| {
+        std::fs::write(&path, mutate(content, &mut random)).expect("can be written");
+        match files.load("") {
+            Ok(scene) => {
+                assert_sound(&scene);
+                true
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("; expected "), "{error}");
+                false
+            }
+        }
+    };
+    (0..rounds).filter(once).count()
+}
+
 #[test]
 fn mutated_files_never_panic() {
     let files = Files::new(&[("it.obj", OBJ), ("it.mtl", MTL), ("scene.toml", TOML)]);
@@ -148,7 +168,7 @@ fn mutated_files_never_panic() {
             ("scene.toml", TOML),
         ][round % 4];
         let path = files.0.path().join(name);
-        std::fs::write(&path, mutate(text, &mut random)).expect("can be written");
+        std::fs::write(&path, mutate(text.as_bytes(), &mut random)).expect("can be written");
         match files.load("") {
             Ok(scene) => {
                 assert_sound(&scene);

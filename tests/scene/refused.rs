@@ -30,18 +30,18 @@ fn mtl_is_refused(text: &str, message: &str) {
 
 #[test]
 fn paths_that_are_no_scene() {
-    let files = Files::new(&[("it.ply", "ply"), ("empty/readme", "")]);
+    let files = Files::new(&[("it.stl", "ply"), ("empty/readme", "")]);
     assert_eq!(
         files.refusal("none.obj"),
-        "none.obj: found no such file or folder; expected a folder with a scene.toml, a .toml or an .obj file"
+        "none.obj: found no such file or folder; expected a folder with a scene.toml, a .toml, .obj, .glb, .gltf or .ply file"
     );
     assert_eq!(
-        files.refusal("it.ply"),
-        "it.ply: found a file of another kind; expected a folder with a scene.toml, a .toml or an .obj file"
+        files.refusal("it.stl"),
+        "it.stl: found a file of another kind; expected a folder with a scene.toml, a .toml, .obj, .glb, .gltf or .ply file"
     );
     assert_eq!(
         files.refusal("empty"),
-        "empty: found a folder without scene.toml; expected a folder with one, a .toml or an .obj file"
+        "empty: found a folder without scene.toml; expected a folder with one, a .toml, .obj, .glb, .gltf or .ply file"
     );
 }
 

@@ -41,7 +41,7 @@ fn the_geometry_of_a_scene_file() {
     let refusal = |toml: &str| Files::new(&[("scene.toml", toml), ("a.txt", "")]).refusal("");
     assert_eq!(
         refusal("name = 'x'"),
-        "scene.toml: found no `geometry`; expected `geometry = \"FILE.obj\"`"
+        "scene.toml: found no `geometry`; expected `geometry = \"FILE\"`, an .obj, .glb, .gltf or .ply file"
     );
     assert_eq!(
         refusal("\ngeometry = 'b.obj'"),
@@ -57,7 +57,7 @@ fn the_geometry_of_a_scene_file() {
     }
     assert_eq!(
         refusal("geometry = 'a.txt'"),
-        "scene.toml:1: found the geometry `a.txt`; expected an .obj file"
+        "scene.toml:1: found the geometry `a.txt`; expected an .obj, .glb, .gltf or .ply file"
     );
 }
 
@@ -65,7 +65,7 @@ fn the_geometry_of_a_scene_file() {
 fn keys_of_a_scene_file() {
     toml_is_refused(
         "unti = 'm'",
-        "scene.toml:2: found unknown field `unti`; expected one of `name`, `geometry`, `unit`, `metres_per_unit`, `sides`, `material`, `camera`",
+        "scene.toml:2: found unknown field `unti`; expected one of `name`, `geometry`, `unit`, `metres_per_unit`, `up`, `point_light_radius`, `sides`, `material`, `camera`",
     );
     toml_is_refused(
         "\nname = 3",

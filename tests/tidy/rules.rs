@@ -60,11 +60,12 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 14] = [
+const IMPORTS: [(&str, &[&str]); 15] = [
+    ("codec", &[]),
     ("geometry", &[]),
     ("radiometry", &[]),
     ("threads", &[]),
-    ("scene", &["geometry", "radiometry"]),
+    ("scene", &["codec", "geometry", "radiometry"]),
     ("visibility", &["geometry"]),
     ("form_factor", &["geometry", "radiometry", "visibility"]),
     ("mesh", &["geometry", "radiometry", "scene"]),
@@ -74,7 +75,10 @@ const IMPORTS: [(&str, &[&str]); 14] = [
         "solution",
         &["geometry", "radiometry", "scene", "mesh", "solver"],
     ),
-    ("output", &["radiometry", "scene", "matrix", "solution"]),
+    (
+        "output",
+        &["codec", "radiometry", "scene", "matrix", "solution"],
+    ),
     (
         "render",
         &["geometry", "radiometry", "scene", "visibility", "solution"],
@@ -82,6 +86,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
     (
         "pipeline",
         &[
+            "radiometry",
             "scene",
             "threads",
             "visibility",
@@ -113,6 +118,7 @@ const MATRIX: &[&str] = &[
 ];
 /// The command may use all that the library offers.
 const CLI: &[&str] = &[
+    "codec",
     "geometry",
     "radiometry",
     "scene",
@@ -243,7 +249,7 @@ fn crates(files: &[File]) -> Vec<String> {
 /// The rooms that are known beforehand; of other crates, one room is as good as another.
 fn owner_of(name: &str) -> Option<&'static str> {
     match name {
-        "clap" | "indicatif" | "anyhow" => Some("cli"),
+        "clap" | "clap_complete" | "clap_mangen" | "indicatif" | "anyhow" => Some("cli"),
         "obvhs" | "embree4_sys" => Some("visibility"),
         "tobj" | "toml" => Some("scene"),
         _ => None,

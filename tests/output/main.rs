@@ -1,5 +1,7 @@
 //! The files: whole or absent, and reading back what was written.
 
+mod meshes;
+
 use glam::{DVec3, Vec3};
 use radiosity::output::{
     SummaryRow, summary_table, write_atomically, write_exr, write_ply, write_png,

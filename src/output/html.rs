@@ -1,0 +1,359 @@
+//! What a solve says of itself, on one page: `report.html`, with pictures and curves inside, no script and nothing to fetch.
+
+use super::plot::Plot;
+use super::{WriteError, write_atomically};
+use crate::codec::base64;
+use crate::solution::{PowerReport, Report};
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::Path;
+
+/// A moment of a solve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// Shots that were complete.
+    pub shots: u64,
+    /// Seconds since the start.
+    pub seconds: f64,
+    /// Unshot over emitted power.
+    pub unshot: f64,
+    /// Elements of the mesh.
+    pub elements: usize,
+}
+
+/// What the page shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Page<'a> {
+    /// The facts.
+    pub report: &'a Report,
+    /// How the solve went, in order; may be empty.
+    pub history: &'a [Moment],
+    /// PNG files with their captions.
+    pub pictures: &'a [(String, Vec<u8>)],
+    /// Files that were written beside the page.
+    pub files: &'a [String],
+}
+
+const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222;background:#fff}\
+h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:2rem;border-bottom:1px solid #ddd}\
+table{border-collapse:collapse;margin:.5rem 0}td,th{padding:.15rem .9rem .15rem 0;text-align:left;vertical-align:top}\
+td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}figure{margin:1rem 0}img{max-width:100%;height:auto}\
+figcaption{color:#666}.plots{display:flex;flex-wrap:wrap;gap:1rem}.plots svg{width:28rem;max-width:100%}\
+svg text{font:11px sans-serif;fill:#444}svg .grid{stroke:#e4e4e4}svg .curve{fill:none;stroke:#21618c;stroke-width:2}\
+svg line.mark{stroke:#b03a2e;stroke-dasharray:5 4}svg text.mark{fill:#b03a2e}.warning{color:#8a4b00}";
+
+/// Writes the page. It is well-formed XML, too.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_html(path: &Path, page: &Page) -> Result<(), WriteError> {
+    let html = page.html();
+    write_atomically(path, |out| out.write_all(html.as_bytes()))
+}
+
+impl Page<'_> {
+    fn html(&self) -> String {
+        let report = self.report;
+        let title = escaped(&report.scene);
+        let mut html = format!(
+            "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+             <title>{title}: radiosity</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+        );
+        html += &self.summary();
+        html += &self.warnings();
+        html += &self.pictures();
+        html += &self.energy();
+        html += &self.convergence();
+        html += &self.quality();
+        html += &self.options();
+        let _ = write!(
+            html,
+            "<p>radiosity {}</p>\n</body>\n</html>\n",
+            env!("CARGO_PKG_VERSION")
+        );
+        html
+    }
+
+    fn summary(&self) -> String {
+        let report = self.report;
+        let seconds = &report.seconds;
+        let engine = &report.engine;
+        let rate = report.rays as f64 / 1e6 / seconds.solve.max(1e-9);
+        let rows = [
+            ("ended", serde_name(&report.stop_reason)),
+            (
+                "shots",
+                format!(
+                    "{}, of which {} refined the mesh",
+                    report.shots, report.meshing_shots
+                ),
+            ),
+            (
+                "mesh",
+                format!(
+                    "{} input polygons, {} patches, {} elements to level {}, {} vertices",
+                    report.input_patches,
+                    report.patches,
+                    report.elements,
+                    report.max_depth,
+                    report.vertices
+                ),
+            ),
+            (
+                "time",
+                format!(
+                    "{:.2} s solving, {:.2} s reading, {:.2} s building, on {} threads",
+                    seconds.solve, seconds.load, seconds.build, report.threads
+                ),
+            ),
+            (
+                "rays",
+                format!(
+                    "{:.3} million, {rate:.2} million a second by {} {} ({}, {} wide)",
+                    report.rays as f64 / 1e6,
+                    engine.name,
+                    engine.version,
+                    engine.isa,
+                    engine.packet_width
+                ),
+            ),
+            ("files", self.files.join(", ")),
+        ];
+        let rows = rows.iter().filter(|(_, value)| !value.is_empty());
+        let rows = rows.map(|(name, value)| row(&[name, value], &[]));
+        format!("<table>\n{}</table>\n", rows.collect::<String>())
+    }
+
+    fn warnings(&self) -> String {
+        let warnings = &self.report.warnings;
+        if warnings.is_empty() {
+            return String::new();
+        }
+        let items = warnings
+            .iter()
+            .map(|warning| format!("<li class=\"warning\">{}</li>\n", escaped(warning)));
+        format!(
+            "<h2>Warnings ({})</h2>\n<ul>\n{}</ul>\n",
+            warnings.len(),
+            items.collect::<String>()
+        )
+    }
+
+    fn pictures(&self) -> String {
+        let mut html = String::new();
+        for (caption, png) in self.pictures {
+            let (caption, data) = (escaped(caption), base64(png));
+            let _ = writeln!(
+                html,
+                "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/><figcaption>{caption}</figcaption></figure>"
+            );
+        }
+        match html.is_empty() {
+            true => html,
+            false => format!("<h2>Pictures</h2>\n{html}"),
+        }
+    }
+
+    fn energy(&self) -> String {
+        let (sum, channels) = (&self.report.power, &self.report.power_rgb);
+        let mut html = format!(
+            "<h2>Energy</h2>\n<table>\n{}",
+            header(&["", "W", "share", "red W", "green W", "blue W"])
+        );
+        for (name, of) in PARTS {
+            let share = 100.0 * of(sum) / sum.emitted.max(f64::MIN_POSITIVE);
+            let channel = |number: usize| {
+                let one = PowerReport {
+                    emitted: channels.emitted[number],
+                    absorbed: channels.absorbed[number],
+                    escaped: channels.escaped[number],
+                    onto_backs: channels.onto_backs[number],
+                    unshot: channels.unshot[number],
+                    residual: channels.residual[number],
+                };
+                format!("{:.6}", of(&one))
+            };
+            let [watts, share] = [format!("{:.6}", of(sum)), format!("{share:.2} %")];
+            let [r, g, b] = [0, 1, 2].map(channel);
+            html += &row(&[name, &watts, &share, &r, &g, &b], &[1, 2, 3, 4, 5]);
+        }
+        html + "</table>\n"
+    }
+
+    fn convergence(&self) -> String {
+        let curve = |x: fn(&Moment) -> f64| -> Vec<(f64, f64)> {
+            let moments = thinned(self.history).into_iter();
+            moments.map(|moment| (x(moment), moment.unshot)).collect()
+        };
+        let error = self
+            .report
+            .audit
+            .map(|audit| (audit.n_rms, "estimated error at the end"));
+        let plots: String = [
+            ("shots", curve(|m| m.shots as f64)),
+            ("seconds", curve(|m| m.seconds)),
+        ]
+        .iter()
+        .map(|(across, points)| {
+            let plot = Plot {
+                across,
+                up: "unshot power",
+                points,
+                mark: error,
+            };
+            plot.svg()
+        })
+        .collect();
+        match plots.is_empty() {
+            true => plots,
+            false => format!("<h2>Convergence</h2>\n<div class=\"plots\">\n{plots}</div>\n"),
+        }
+    }
+
+    fn quality(&self) -> String {
+        let Some(audit) = self.report.audit else {
+            return String::new();
+        };
+        let span =
+            |least: f64, mean: f64, most: f64| format!("{least:.4} to {most:.4}, mean {mean:.4}");
+        let received = &audit.received_sum;
+        let mut rows = vec![
+            (
+                "estimated error of the irradiance",
+                format!(
+                    "{:.2} % nRMS, of it {:+.2} % bias, at {} points",
+                    100.0 * audit.n_rms,
+                    100.0 * audit.bias,
+                    audit.points
+                ),
+            ),
+            (
+                "mean irradiance",
+                format!("{:.6} W/m² a channel", audit.mean_irradiance),
+            ),
+            (
+                "form factors from a point to all (1 in a closed scene)",
+                span(received.least, received.mean, received.most),
+            ),
+        ];
+        if let Some(sent) = &audit.sent_sum {
+            rows.push((
+                "arrived and escaped over sent, by patch (1)",
+                span(sent.least, sent.mean, sent.most),
+            ));
+        }
+        if let Some(target) = &self.report.target {
+            let reached = if target.reached {
+                "reached"
+            } else {
+                "not reached"
+            };
+            let text = format!(
+                "{:.2} %, {reached} in {} solves",
+                100.0 * target.n_rms,
+                target.rounds
+            );
+            rows.push(("error asked for", text));
+        }
+        let rows = rows.iter().map(|(name, value)| row(&[name, value], &[]));
+        format!(
+            "<h2>Accuracy</h2>\n<table>\n{}</table>\n",
+            rows.collect::<String>()
+        )
+    }
+
+    fn options(&self) -> String {
+        let options = serde_json::to_value(&self.report.options).unwrap_or_default();
+        let mut rows = String::new();
+        for (name, value) in options.as_object().into_iter().flatten() {
+            let inner = value
+                .as_object()
+                .filter(|inner| !inner.contains_key("secs"));
+            match inner {
+                Some(inner) => {
+                    for (name, value) in inner {
+                        rows += &row(&[name, &plain(value)], &[1]);
+                    }
+                }
+                None => rows += &row(&[name, &plain(value)], &[1]),
+            }
+        }
+        format!("<h2>Options</h2>\n<table>\n{rows}</table>\n")
+    }
+}
+
+/// A line of the ledger.
+type Part = (&'static str, fn(&PowerReport<f64>) -> f64);
+
+const PARTS: [Part; 6] = [
+    ("emitted", |power| power.emitted),
+    ("absorbed by surfaces", |power| power.absorbed),
+    ("escaped", |power| power.escaped),
+    ("… of it onto dark backs", |power| power.onto_backs),
+    ("unshot", |power| power.unshot),
+    ("left over (error of the discretisation)", |power| {
+        power.residual
+    }),
+];
+
+/// At most some hundred moments, the first and the last among them.
+fn thinned(history: &[Moment]) -> Vec<&Moment> {
+    const MOST: usize = 400;
+    let step = history.len().div_ceil(MOST).max(1);
+    let mut kept: Vec<&Moment> = history.iter().step_by(step).collect();
+    kept.extend(history.last().filter(|last| kept.last() != Some(last)));
+    kept
+}
+
+/// A name as reports in JSON show it.
+fn serde_name(value: &impl serde::Serialize) -> String {
+    plain(&serde_json::to_value(value).unwrap_or_default())
+}
+
+fn plain(value: &serde_json::Value) -> String {
+    match value {
+        serde_json::Value::Null => "none".into(),
+        serde_json::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+fn header(cells: &[&str]) -> String {
+    let cell = |(place, text): (usize, &&str)| {
+        let class = if place == 0 { "" } else { " class=\"n\"" };
+        format!("<th{class}>{}</th>", escaped(text))
+    };
+    let cells: String = cells.iter().enumerate().map(cell).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+/// A row of which some cells are numbers.
+fn row(cells: &[&str], numbers: &[usize]) -> String {
+    let cell = |(place, text): (usize, &&str)| {
+        let class = if numbers.contains(&place) {
+            " class=\"n\""
+        } else {
+            ""
+        };
+        format!("<td{class}>{}</td>", escaped(text))
+    };
+    let cells: String = cells.iter().enumerate().map(cell).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+/// Text as HTML and XML want it; control characters, which XML has not, as spaces.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            c if c.is_control() => escaped.push(' '),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,167 @@
+//! glTF 2.0: `.gltf` with the files it names, and `.glb`.
+//!
+//! The crate `gltf` reads and checks the JSON; what the JSON says of the buffers is checked here, as the crate takes it on
+//! trust. By the standard lengths are in metres, y is up, and emission is luminance in cd/m², which becomes radiance at
+//! [`WHITE_EFFICACY`] lumens per watt.
+
+mod accessor;
+mod camera;
+mod file;
+mod lights;
+mod materials;
+mod nodes;
+mod primitives;
+mod texture;
+
+use super::geometry::{Geometry, Reading};
+use super::settings::SidesRule;
+use super::weld::Welder;
+use super::{SceneError, duplicates, sides};
+use crate::radiometry::WHITE_EFFICACY;
+use file::File;
+use glam::DVec3;
+use lights::Lights;
+use materials::Palette;
+use nodes::Placed;
+use std::path::Path;
+
+/// Reads a glTF file.
+pub(super) fn read(
+    path: &Path,
+    how: Reading,
+    warnings: &mut Vec<String>,
+) -> Result<Geometry, SceneError> {
+    let file = File::open(path)?;
+    let placed = nodes::placed(&file)?;
+    let lights = Lights::of(&file, &placed, how)?;
+    let mut building = Building {
+        file: &file,
+        geometry: Geometry::default(),
+        welder: Welder::default(),
+        palette: Palette::new(&file),
+        noticed: Noticed::default(),
+    };
+    for node in &placed {
+        building.mesh(node)?;
+    }
+    lights.shine(&mut building);
+    let cameras = camera::cameras(&placed, &mut building.noticed);
+    let Building {
+        mut geometry,
+        welder,
+        palette,
+        noticed,
+        ..
+    } = building;
+    noticed.report(path, warnings);
+    palette.report(path, warnings);
+    geometry.polygons.positions = welder.into_positions();
+    let (library, shining) = palette.finish();
+    geometry.library = library;
+    geometry.cameras = cameras;
+    shine_from_both_sides(&mut geometry, &shining);
+    Ok(geometry)
+}
+
+/// A geometry that grows.
+struct Building<'a> {
+    file: &'a File<'a>,
+    geometry: Geometry,
+    welder: Welder,
+    palette: Palette<'a>,
+    noticed: Noticed,
+}
+
+impl Building<'_> {
+    /// Adds a polygon of the group that was begun last.
+    fn push(&mut self, corners: impl IntoIterator<Item = u32>, material: u32) {
+        self.geometry.polygons.push(corners, material);
+        let group = self.geometry.groups.len().checked_sub(1);
+        self.geometry.group_of.push(group.map(|g| g as u32));
+    }
+
+    /// Begins a group.
+    fn group(&mut self, name: Option<&str>) {
+        let number = self.geometry.groups.len() + 1;
+        let name = name.map_or_else(|| format!("node {number}"), str::to_owned);
+        self.geometry.groups.push(name);
+    }
+
+    fn mesh(&mut self, placed: &Placed) -> Result<(), SceneError> {
+        let Some(mesh) = placed.node.mesh() else {
+            return Ok(());
+        };
+        self.group(placed.node.name().or(mesh.name()));
+        self.noticed.skins += usize::from(placed.node.skin().is_some());
+        for primitive in mesh.primitives() {
+            primitives::add(self, placed, &mesh, &primitive)?;
+        }
+        Ok(())
+    }
+}
+
+/// Things that were left out or taken for something simpler.
+#[derive(Default)]
+struct Noticed {
+    skins: usize,
+    morphs: usize,
+    lines: usize,
+    orthographic: usize,
+    lights: usize,
+    spots: usize,
+}
+
+impl Noticed {
+    fn report(&self, path: &Path, warnings: &mut Vec<String>) {
+        for (count, what) in [
+            (
+                self.skins,
+                "meshes with a skeleton taken in their rest pose",
+            ),
+            (self.morphs, "meshes with morph targets taken without them"),
+            (self.lines, "primitives of points or lines left out"),
+            (self.orthographic, "orthographic cameras left out"),
+            (self.lights, "lights that have no surface left out"),
+            (
+                self.spots,
+                "spot lights taken as small squares, bright along the axis as stated but without a cone",
+            ),
+        ] {
+            warn(warnings, path, count, what);
+        }
+    }
+}
+
+/// Notes something that was met `count` times.
+fn warn(warnings: &mut Vec<String>, path: &Path, count: usize, what: &str) {
+    if count > 0 {
+        warnings.push(format!("{}: {count} {what}", path.display()));
+    }
+}
+
+/// Light leaves the front of a polygon; a double-sided emitter that is not the skin of a solid becomes two, back to back.
+/// `shining` are the materials of such emitters.
+fn shine_from_both_sides(geometry: &mut Geometry, shining: &[u32]) {
+    if shining.is_empty() {
+        return;
+    }
+    let polygons = &mut geometry.polygons;
+    let repeated = duplicates::find(polygons);
+    let closed = sides::closed(polygons, &repeated);
+    for polygon in 0..polygons.len() {
+        let material = polygons.materials[polygon];
+        if shining.contains(&material) && !closed[polygon] && !repeated[polygon] {
+            let back: Vec<u32> = polygons.corners(polygon).iter().rev().copied().collect();
+            polygons.push(back, material);
+            geometry.group_of.push(geometry.group_of[polygon]);
+        }
+    }
+    for material in shining {
+        geometry.library.entries[*material as usize].sides = Some(SidesRule::Front);
+    }
+}
+
+/// Radiance (W m⁻² sr⁻¹) of a luminance in cd/m², or radiant intensity (W/sr) of a luminous one in cd.
+fn watts(photometric: DVec3) -> DVec3 {
+    photometric / WHITE_EFFICACY
+}

@@ -1,0 +1,100 @@
+//! The mean colour of a texture over a polygon.
+
+use super::file::File;
+use crate::codec::{Pixels, decode_jpeg, decode_png};
+use crate::radiometry::linear;
+use ::gltf::image::Source;
+use ::gltf::texture::WrappingMode;
+use glam::{DVec2, DVec3};
+
+/// The most samples along the side of a triangle: a mean over more is no better.
+const MOST_SAMPLES: f64 = 32.0;
+
+/// A corner of a triangle, in space and in the textures of its material: base colour, emission.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Corner {
+    pub position: DVec3,
+    pub texture: [DVec2; 2],
+}
+
+/// A decoded texture.
+pub(super) struct Texture {
+    pixels: Pixels,
+    wrap: [WrappingMode; 2],
+}
+
+impl Texture {
+    /// Decodes it; the error says what is wrong.
+    pub fn of(file: &File, texture: &::gltf::Texture) -> Result<Self, String> {
+        let bytes = match texture.source().source() {
+            Source::View { view, .. } => file.view(&view)?.to_vec(),
+            Source::Uri { uri, .. } => file.resource(uri).map_err(|error| error.found)?,
+        };
+        let pixels = match bytes.as_slice() {
+            [0x89, b'P', b'N', b'G', ..] => decode_png(&bytes)?,
+            [0xFF, 0xD8, ..] => decode_jpeg(&bytes)?,
+            _ => return Err("neither PNG nor JPEG".into()),
+        };
+        let sampler = texture.sampler();
+        Ok(Self {
+            pixels,
+            wrap: [sampler.wrap_s(), sampler.wrap_t()],
+        })
+    }
+
+    /// The mean over triangles by area, linear; `which` of the corners' coordinates are this texture's.
+    pub fn mean(&self, triangles: &[[Corner; 3]], which: usize) -> DVec3 {
+        let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|corner| corner.position);
+            let area = (b - a).cross(c - a).length();
+            sum += area * self.mean_of(triangle.map(|corner| corner.texture[which]));
+            weight += area;
+        }
+        match weight > 0.0 {
+            true => sum / weight,
+            false => DVec3::ONE,
+        }
+    }
+
+    /// The mean over a triangle in the texture, from the middles of equal triangles.
+    fn mean_of(&self, [a, b, c]: [DVec2; 3]) -> DVec3 {
+        let size = DVec2::new(f64::from(self.pixels.width), f64::from(self.pixels.height));
+        let texels = [b - a, c - b, a - c].map(|side| (side * size).length());
+        let longest = texels.into_iter().fold(0.0, f64::max);
+        let n = longest.ceil().clamp(2.0, MOST_SAMPLES) as u32;
+        let at = |u: f64, v: f64| {
+            let step = 1.0 / f64::from(n);
+            self.texel(a + (b - a) * u * step + (c - a) * v * step)
+        };
+        let mut sum = DVec3::ZERO;
+        for i in 0..n {
+            for j in 0..n - i {
+                let (u, v) = (f64::from(i), f64::from(j));
+                sum += at(u + 1.0 / 3.0, v + 1.0 / 3.0);
+                if i + j + 1 < n {
+                    sum += at(u + 2.0 / 3.0, v + 2.0 / 3.0);
+                }
+            }
+        }
+        sum / f64::from(n * n)
+    }
+
+    fn texel(&self, at: DVec2) -> DVec3 {
+        let x = place(at.x, self.pixels.width, self.wrap[0]);
+        let y = place(at.y, self.pixels.height, self.wrap[1]);
+        let colour = self.pixels.colours[y * self.pixels.width as usize + x];
+        DVec3::from(colour.map(|c| f64::from(linear(f32::from(c) / 255.0))))
+    }
+}
+
+/// The texel at a coordinate, of which 0 to 1 is the picture.
+fn place(at: f64, size: u32, wrap: WrappingMode) -> usize {
+    let within = match wrap {
+        WrappingMode::ClampToEdge => at.clamp(0.0, 1.0),
+        WrappingMode::Repeat => at.rem_euclid(1.0),
+        WrappingMode::MirroredRepeat => 1.0 - (at.rem_euclid(2.0) - 1.0).abs(),
+    };
+    // What is no number becomes 0.
+    (within * f64::from(size)).min(f64::from(size - 1)) as usize
+}

@@ -1,0 +1,108 @@
+//! `radiosity export`, and the formats that `radiosity solve` writes.
+
+use super::{draft, floor, folder, names, radiosity, text};
+use std::fs;
+
+#[test]
+fn a_solution_is_exported_as_solve_itself_writes_it() {
+    let (folder, solved) = draft("geometry");
+    for format in ["glb", "ply", "vtu"] {
+        let output = folder.path().join(format!("again.{format}"));
+        radiosity(&["export", text(&solved), "-o", text(&output)]).assert_success();
+        let (first, again) = (
+            fs::read(solved.join(format!("solution.{format}"))),
+            fs::read(&output),
+        );
+        assert!(
+            first.expect("solve wrote it") == again.expect("export wrote it"),
+            "{format} differs"
+        );
+    }
+}
+
+#[test]
+fn exposure_changes_colours_and_efficacy_lux() {
+    let (folder, solved) = draft("geometry");
+    let export = |name: &str, flag: &str, value: &str| {
+        let output = folder.path().join(name);
+        radiosity(&["export", text(&solved), "-o", text(&output), flag, value]).assert_success();
+        fs::read(&output).expect("was written")
+    };
+    assert_ne!(
+        export("a.obj", "--exposure", "-1"),
+        export("b.obj", "--exposure", "2.5")
+    );
+    assert_ne!(
+        export("a.vtu", "--efficacy", "1"),
+        export("b.vtu", "--efficacy", "179")
+    );
+}
+
+#[test]
+fn endings_that_are_no_format_are_refused() {
+    let (folder, solved) = draft("geometry");
+    for name in ["mesh.stl", "mesh", ".glb"] {
+        let output = folder.path().join(name);
+        let run = radiosity(&["export", text(&solved), "-o", text(&output)]);
+        run.assert_refused(3, &[name, ".glb, .obj, .ply, .vtu"]);
+    }
+    assert_eq!(names(folder.path()), ["solved"]);
+    radiosity(&["export", "/nowhere", "-o", "/nowhere/a.glb"])
+        .assert_refused(3, &["/nowhere/solution.rad"]);
+}
+
+#[test]
+fn solve_writes_the_formats_that_are_asked_for() {
+    let folder = folder();
+    let scene = floor(&folder);
+    for (list, expected) in [
+        ("none", &["report.html", "report.json", "solution.rad"][..]),
+        (
+            "obj, vtu,obj",
+            &[
+                "report.html",
+                "report.json",
+                "solution.obj",
+                "solution.rad",
+                "solution.vtu",
+            ],
+        ),
+    ] {
+        let output = folder.path().join("out").join(&list[..3]);
+        let solve = ["solve", text(&scene), "-o", text(&output), "--no-pictures"];
+        radiosity(&[&solve[..], &["--formats", list]].concat()).assert_success();
+        assert_eq!(names(&output), expected, "{list}");
+    }
+    let wrong = radiosity(&["solve", text(&scene), "-o", "x", "--formats", "glb,stl"]);
+    wrong.assert_refused(2, &["`stl`", "glb, obj, ply, vtu or none"]);
+}
+
+#[test]
+fn a_written_glb_is_a_scene_again() {
+    let (_folder, solved) = draft("cornell-box");
+    let run = radiosity(&["info", text(&solved.join("solution.glb"))]);
+    run.assert_success();
+    for words in [
+        "unit          1 m",
+        "emitters      0",
+        "camera        front",
+    ] {
+        assert!(run.out.contains(words), "`{words}` is not in:\n{}", run.out);
+    }
+}
+
+#[test]
+fn the_cornell_box_has_its_size_in_metres_and_its_camera() {
+    let (_folder, solved) = draft("cornell-box");
+    let (document, _) = gltf::Gltf::open(solved.join("solution.glb"))
+        .map(|gltf| (gltf.document, gltf.blob))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let camera = document.cameras().next().expect("has a camera");
+    assert_eq!(camera.name(), Some("front"));
+    let positions = document.accessors().next().expect("has positions");
+    let highest = positions.max().expect("is stated");
+    for (coordinate, millimetres) in [556.0, 548.8, 559.2].into_iter().enumerate() {
+        let metres = highest[coordinate].as_f64().expect("is a number");
+        assert!((1000.0 * metres - millimetres).abs() < 0.5, "{highest}");
+    }
+}

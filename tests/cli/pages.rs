@@ -1,0 +1,108 @@
+//! `report.html`.
+
+use super::{folder, names, radiosity, scene, text};
+use roxmltree::{Document, ParsingOptions};
+use std::fs;
+
+/// The page of a solve with those flags, once it has proved well-formed and free of anything to fetch or run.
+fn page(flags: &[&str]) -> String {
+    let folder = folder();
+    let scene = scene("cornell-box");
+    let solve = [
+        "solve",
+        text(&scene),
+        "-o",
+        text(folder.path()),
+        "--preset",
+        "draft",
+    ];
+    radiosity(&[&solve[..], flags].concat()).assert_success();
+    let html = fs::read_to_string(folder.path().join("report.html")).expect("was written");
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(&html, options);
+    let document = document.unwrap_or_else(|error| panic!("{error}"));
+    for node in document.descendants() {
+        let tag = node.tag_name().name();
+        let idle = !["script", "link", "iframe", "object", "embed"].contains(&tag);
+        assert!(idle, "<{tag}>");
+        for attribute in node.attributes() {
+            let (name, value) = (attribute.name(), attribute.value());
+            let refers = ["src", "href", "data", "srcset"].contains(&name);
+            assert!(!refers || value.starts_with("data:"), "{name}={value}");
+            assert!(!name.starts_with("on"), "{name}");
+        }
+    }
+    assert!(!html.contains("url(") && !html.contains("@import"));
+    html
+}
+
+#[test]
+fn the_report_is_one_page_with_everything_in_it() {
+    let html = page(&[]);
+    for words in [
+        "<title>Cornell box: radiosity</title>",
+        "converged",
+        "estimated error of the irradiance",
+        "absorbed by surfaces",
+        "epsilon_fd",
+        "solution.rad, report.json, solution.ply, solution.glb, solution.vtu",
+        "front: light",
+        "front: mesh",
+    ] {
+        assert!(html.contains(words), "`{words}` is not there");
+    }
+    assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 2);
+    let png = html
+        .split("data:image/png;base64,")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next());
+    let png = png
+        .and_then(radiosity::codec::from_base64)
+        .expect("is base64");
+    let picture = radiosity::codec::decode_png(&png).unwrap_or_else(|reason| panic!("{reason}"));
+    assert_eq!((picture.width, picture.height), (768, 768));
+    let curves: Vec<usize> = html
+        .split("class=\"curve\" points=\"")
+        .skip(1)
+        .map(|rest| {
+            rest.split('"')
+                .next()
+                .unwrap_or_default()
+                .split(' ')
+                .count()
+        })
+        .collect();
+    assert_eq!(curves.len(), 2, "over shots and over seconds");
+    assert!(curves.iter().all(|points| *points > 20), "{curves:?}");
+    assert!(html.contains("estimated error at the end"));
+}
+
+#[test]
+fn without_pictures_the_page_has_none() {
+    let html = page(&["--no-pictures", "--formats", "none", "--max-shots", "2"]);
+    assert!(!html.contains("<img") && !html.contains("solution.ply"));
+    assert!(html.contains("max-shots"));
+}
+
+#[test]
+fn names_are_text_and_warnings_are_counted() {
+    let folder = folder();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\n";
+    fs::write(folder.path().join("a.obj"), obj).expect("can be written");
+    let toml = "name = '<b>&\"'\ngeometry = 'a.obj'\n";
+    let scene = folder.path().join("a.toml");
+    fs::write(&scene, toml).expect("can be written");
+    let output = folder.path().join("out");
+    let solve = ["solve", text(&scene), "-o", text(&output), "--no-pictures"];
+    radiosity(&solve).assert_success();
+    let html = fs::read_to_string(output.join("report.html")).expect("was written");
+    assert!(html.contains("<h1>&lt;b&gt;&amp;&quot;</h1>"), "{html}");
+    assert!(html.contains("<h2>Warnings (2)</h2>"), "{html}");
+    let without = [&solve[..], &["--no-html", "--formats", "none"]].concat();
+    fs::remove_dir_all(&output).expect("is there");
+    radiosity(&without).assert_success();
+    assert_eq!(names(&output), ["report.json", "solution.rad"]);
+}
