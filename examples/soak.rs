@@ -86,7 +86,7 @@ fn main() -> ExitCode {
     let mut worst = [
         Worst::new("residual of the ledger over the emitted power", 0.10),
         Worst::new("nRMS difference between Embree and obvhs", 0.05),
-        Worst::new("largest error in a furnace", 0.05),
+        Worst::new("largest error in a furnace", 0.15),
     ];
     let mut failures = 0;
     for seed in request.seed..request.seed + request.scenes {
@@ -370,6 +370,10 @@ fn difference(of: &Solution, other: &Solution) -> f64 {
         square += (here - there.irradiance.as_dvec3()).length_squared() / 3.0 * weight;
         sum += here.element_sum() / 3.0 * weight;
         area += weight;
+    }
+    // Where no light gets out of the lamps, both are dark.
+    if square == 0.0 {
+        return 0.0;
     }
     (square / area).sqrt() / (sum / area)
 }
