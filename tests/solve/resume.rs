@@ -257,3 +257,38 @@ fn a_file_of_the_first_format_is_shown_but_not_continued() {
     let error = Run::resume(solution, Settings::default()).err();
     assert!(matches!(error, Some(SolveError::NotKept)));
 }
+
+/// A checksum that holds does not make the contents sound: whatever is wrong with them is found before they are used.
+#[test]
+fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
+    let scene = bundled("geometry");
+    let how = settings(draft(), EngineChoice::Obvhs, 1);
+    let mut run = Run::new(scene, how).expect("can be solved");
+    run.go(&mut Batches(4)).expect("can be solved");
+    let whole = run.finish();
+    assert!(Solution::decode(&file(&whole)).is_ok());
+    let refused = |spoil: &dyn Fn(&mut Solution), words: &str| {
+        let mut spoilt = whole.clone();
+        spoil(&mut spoilt);
+        let error = Solution::decode(&file(&spoilt)).expect_err(words);
+        assert!(error.contains(words), "{error}");
+    };
+    refused(&|s| s.mesh.patches[0].normal *= -1.0, "a patch");
+    refused(&|s| s.mesh.patches[0].area = f64::NAN, "a patch");
+    refused(&|s| s.mesh.patches[1].roots.end = 1 << 20, "a root");
+    refused(&|s| s.mesh.patches[1].vertices[0] = u32::MAX, "a vertex");
+    refused(&|s| s.mesh.vertices[3].patch = 1 << 20, "a vertex");
+    refused(&|s| s.mesh.vertices[3].lattice.u = u32::MAX, "a vertex");
+    refused(&|s| s.mesh.elements[0].corners[0] = 1 << 30, "a corner");
+    refused(&|s| s.mesh.elements[1].children = 0, "the children");
+    refused(&|s| s.mesh.buried.truncate(1), "buried");
+    refused(&|s| s.light.irradiance.truncate(1), "does not fit the mesh");
+    refused(&|s| s.light.exitance_unshot.truncate(1), "exitance");
+    refused(&|s| s.light.unshot[0].x = f32::INFINITY, "no number");
+    let scene = |s: &mut Solution, spoil: &dyn Fn(&mut Scene)| {
+        spoil(&mut s.continuation.as_mut().expect("is kept").scene);
+    };
+    refused(&|s| scene(s, &|of| of.vertices.truncate(2)), "a surface");
+    refused(&|s| scene(s, &|of| of.surfaces.truncate(1)), "no surface");
+    refused(&|s| scene(s, &|of| of.vertices[0].y = f64::NAN), "nowhere");
+}
