@@ -94,6 +94,26 @@ impl Convex {
         halves
     }
 
+    /// The part where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong to it.
+    pub fn above(&self, height: impl Fn(DVec3) -> f64, reach: f64) -> Convex {
+        let mut above = Self::EMPTY;
+        let Some(mut a) = self.corners().last().copied() else {
+            return above;
+        };
+        let mut ha = height(a);
+        for b in self.corners().iter().copied() {
+            let hb = height(b);
+            if (ha > reach && hb < -reach) || (ha < -reach && hb > reach) {
+                above.push(a + (b - a) * (ha / (ha - hb)));
+            }
+            if hb >= -reach {
+                above.push(b);
+            }
+            (a, ha) = (b, hb);
+        }
+        above
+    }
+
     /// Splits into quads and triangles: fans of quads from the first corner. Nothing from nothing.
     pub fn tiles(&self) -> impl Iterator<Item = Convex> + '_ {
         let first = self.corners[0];

@@ -121,13 +121,14 @@ impl<'a> Looker<'a> {
             order.clear();
             order.extend_from_slice(between);
             let occluders = &self.space.occluders;
-            order.sort_by_key(|it| occluders[it.occluder as usize].height(eye.centroid) <= 0.0);
+            order.sort_by_key(|it| occluders[it.occluder as usize].is_seen_from_behind(eye.centroid));
         }
         let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
         let view = |outer, inner, k: usize| View {
             outer,
             inner,
             between: &orders[k],
+            there: 1 - k,
             whole,
             is_far: self.space.ranges.is_afar(gap, inner),
         };

@@ -3,14 +3,17 @@
 use super::convex::Convex;
 use super::facet::Facet;
 use super::gauss::each_node;
-use super::occluder::{Between, Occluder, Planes};
+use super::occluder::Between;
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
-use super::visible::{Cutter, TooIntricate};
+use super::visible::{Cutter, Seen, Sight, TooIntricate};
 use glam::DVec3;
 
 /// Corners are looked from a little inside, since on a common edge a form factor has no value.
 const INWARDS: f64 = 1e-3;
+
+/// Of what is seen, less than this is what rounding left.
+const ROUNDING: f64 = 1e-12;
 
 /// Integrals over a tile of one facet of what its points see of the other.
 #[derive(Debug, Clone, Copy, Default)]
@@ -65,6 +68,8 @@ pub(super) struct View<'a> {
     pub outer: &'a Facet,
     pub inner: &'a Facet,
     pub between: &'a [Between],
+    /// Which of the two facets of the pair is looked at.
+    pub there: usize,
     /// Whether midpoints are enough for what is seen of the other ([`seen_afar`]).
     pub is_far: bool,
     /// What they exchange with nothing between.
@@ -72,10 +77,14 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// What lies between, with the planes of its shadows that matter.
-    fn occluders(&self, space: &'a Space) -> impl Iterator<Item = (&'a Occluder, Planes)> + 'a {
-        let between = self.between.iter();
-        between.map(|it| (&space.occluders[it.occluder as usize], it.planes))
+    fn sight(&self, space: &'a Space) -> Sight<'a> {
+        Sight {
+            facet: self.inner,
+            occluders: &space.occluders,
+            between: self.between,
+            there: self.there,
+            extent: space.extent,
+        }
     }
 }
 
@@ -120,8 +129,7 @@ impl<'a> Eyes<'a> {
     }
 
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
-        let (normal, extent) = (view.outer.normal, self.space.extent);
-        let occluders = view.occluders(self.space);
+        let normal = view.outer.normal;
         let measure = |part: &[DVec3]| {
             if view.is_far {
                 seen_afar(normal, eye, view.inner.normal, part)
@@ -129,11 +137,13 @@ impl<'a> Eyes<'a> {
                 seen(normal, eye, part)
             }
         };
-        let visible = self
-            .cutter
-            .seen(eye, view.inner, occluders, extent, measure)?;
+        let found = self.cutter.seen(eye, view.sight(self.space), measure)?;
         let all = measure(view.inner.corners());
-        let visible = visible.unwrap_or(all);
+        let visible = match found {
+            Seen::All => all,
+            Seen::AllBut(hidden) if all - hidden > ROUNDING * all => all - hidden,
+            Seen::AllBut(_) | Seen::Nothing => 0.0,
+        };
         Ok(Sums {
             visible: weight * visible,
             all: weight * all,
@@ -176,10 +186,9 @@ impl<'a> Eyes<'a> {
     }
 
     fn all_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
-        let extent = self.space.extent;
+        let sight = view.sight(self.space);
         for (eye, _) in &self.places {
-            let occluders = view.occluders(self.space);
-            if !self.cutter.hides(*eye, view.inner, occluders, extent)? {
+            if !self.cutter.hides(*eye, sight)? {
                 return Ok(false);
             }
         }

@@ -14,11 +14,13 @@
 //! Imports `geometry`, `radiometry`, `scene`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
 
 mod balance;
+mod body;
 mod certificate;
 mod contour;
 mod convex;
 mod dense;
 mod divide;
+mod effect;
 mod enclosure;
 mod enforce;
 mod error;

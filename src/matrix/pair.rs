@@ -2,8 +2,10 @@
 
 use super::facet::Facet;
 use super::hidden::{Looker, Share};
-use super::occluder::{Between, Effect, Lines};
+use super::effect::{Effect, Lines};
+use super::occluder::Between;
 use super::space::Space;
+use glam::DVec3;
 
 /// What a pair of facets exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -95,33 +97,41 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Leaves in `between` what may hide some of either facet from the other; false if one surface hides all.
+    /// Leaves in `between` what may hide some of either facet from the other; false if one body or surface hides all.
     fn find_between(&mut self, a: &Facet, b: &Facet, near: &[u32]) -> bool {
         self.between.clear();
         if near.is_empty() {
             return true;
         }
-        let (low, high) = (a.low.min(b.low), a.high.max(b.high));
-        let mut lines_are_set = false;
-        for &k in near {
-            let occluder = &self.space.occluders[k as usize];
-            let apart = occluder.low.cmpge(high).any() || occluder.high.cmple(low).any();
-            if apart || !occluder.rises_over(a) || !occluder.rises_over(b) {
-                continue;
-            }
-            if !lines_are_set {
-                self.lines.set(&a.shape, &b.shape);
-                lines_are_set = true;
-            }
-            match occluder.effect(&self.lines, self.space.extent) {
-                Effect::None => {}
-                Effect::Some(planes) => self.between.push(Between {
+        self.lines.set(&a.shape, &b.shape);
+        let bounds = (a.low.min(b.low), a.high.max(b.high));
+        near.iter().all(|k| self.find_effect([a, b], *k, bounds))
+    }
+
+    /// Adds an occluder to what lies between; false if it hides all.
+    fn find_effect(&mut self, [a, b]: [&Facet; 2], k: u32, (low, high): (DVec3, DVec3)) -> bool {
+        let occluder = &self.space.occluders[k as usize];
+        let apart = occluder.low.cmpge(high).any() || occluder.high.cmple(low).any();
+        if apart || !occluder.rises_over(a) || !occluder.rises_over(b) {
+            return true;
+        }
+        let sides = [a, b].map(|facet| occluder.sides(facet.corners()));
+        let is_outside = |k: usize| occluder.is_outside([a, b][k], sides[k]);
+        if occluder.is_body() && !(is_outside(0) && is_outside(1)) {
+            let mut members = occluder.members.clone();
+            return members.all(|member| self.find_effect([a, b], member, (low, high)));
+        }
+        match occluder.effect(&self.lines, sides, self.space.extent) {
+            Effect::None => true,
+            Effect::All => false,
+            Effect::Some(planes) => {
+                self.between.push(Between {
                     occluder: k,
                     planes,
-                }),
-                Effect::All => return false,
+                    sides,
+                });
+                true
             }
         }
-        true
     }
 }

@@ -1,5 +1,6 @@
 //! Everything that pairs are worked out from: facets, what may come between them, and the limits of accuracy.
 
+use super::body::with_bodies;
 use super::facet::{Facet, Part};
 use super::join::joined;
 use super::occluder::Occluder;
@@ -130,7 +131,8 @@ impl Part<'_> {
     }
 }
 
-/// The surfaces of a scene, with neighbours in one plane joined; `positions` are its vertices in a frame of the given extent.
+/// The surfaces of a scene, with neighbours in one plane joined, and convex bodies that they bound; `positions` are its vertices in a
+/// frame of the given extent.
 pub(super) fn occluders(scene: &Scene, positions: &[DVec3], extent: f64) -> Vec<Occluder> {
     let polygons = scene
         .surfaces
@@ -140,15 +142,12 @@ pub(super) fn occluders(scene: &Scene, positions: &[DVec3], extent: f64) -> Vec<
     let surfaces = joined(polygons, positions, FLAT * extent);
     let occluder = |surface: super::join::Joined| {
         let mut occluder = Occluder::new(surface.corners, TOUCH * extent)?;
-        let warp = surface
-            .vertices
-            .iter()
-            .map(|v| occluder.height(*v).abs())
-            .fold(0.0, f64::max);
-        occluder.thickness = occluder.thickness.max(warp + TOUCH * extent);
+        let warp = occluder.front().warp(&surface.vertices);
+        occluder.thicken(warp + TOUCH * extent);
         Some(occluder)
     };
-    surfaces.into_iter().filter_map(occluder).collect()
+    let surfaces = surfaces.into_iter().filter_map(occluder).collect();
+    with_bodies(surfaces, FLAT * extent)
 }
 
 /// The same as triangles, for rays.

@@ -1,7 +1,7 @@
 //! A tree over the facets: for one facet, all others, each with the surfaces that may come between.
 
 use super::facet::Facet;
-use super::occluder::{Occluder, Side};
+use super::occluder::{Occluder, Sides};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -103,10 +103,11 @@ impl Tree {
             sides: Vec::new(),
         };
         for (k, occluder) in (0..).zip(occluders) {
-            let side = occluder.side(facet.corners());
-            if side != Side::On && occluder.rises_over(facet) {
+            let sides = occluder.sides(facet.corners());
+            let is_in_plane = !occluder.is_body() && sides.is_on();
+            if !occluder.is_face && !is_in_plane && occluder.rises_over(facet) {
                 walk.near.push(k);
-                walk.sides.push(side);
+                walk.sides.push(sides);
             }
         }
         let count = walk.near.len();
@@ -122,7 +123,7 @@ struct Walk<'a> {
     from: u32,
     /// Occluders for the levels on the way, one after the other, with the sides on which the facet lies.
     near: Vec<u32>,
-    sides: Vec<Side>,
+    sides: Vec<Sides>,
 }
 
 impl Walk<'_> {
@@ -137,17 +138,16 @@ impl Walk<'_> {
         let begin = self.near.len();
         let (low, high) = (node.low.min(self.facet.low), node.high.max(self.facet.high));
         for place in near {
-            let (k, side) = (self.near[place], self.sides[place]);
+            let (k, sides) = (self.near[place], self.sides[place]);
             let occluder = &self.occluders[k as usize];
             if occluder.low.cmpge(high).any() || occluder.high.cmple(low).any() {
                 continue;
             }
-            let there = occluder.side_of_box(node.low, node.high);
-            if there == Side::On || (there == side && side != Side::Across) {
+            if sides.share_a_front(occluder.sides_of_box(node.low, node.high)) {
                 continue;
             }
             self.near.push(k);
-            self.sides.push(side);
+            self.sides.push(sides);
         }
         let end = self.near.len();
         if node.second == 0 {
