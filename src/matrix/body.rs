@@ -101,7 +101,9 @@ struct Skin {
 fn body(group: &[Occluder], members: Range<u32>, reach: f64) -> Option<Occluder> {
     let mut skin = Skin::new(group, reach)?;
     skin.close(group[0].front().thickness, reach)?;
-    let corners: Vec<DVec3> = group.iter().flat_map(|face| face.corners.clone()).collect();
+    let mut corners: Vec<(Corner, DVec3)> = skin.places.iter().map(|(c, p)| (*c, *p)).collect();
+    corners.sort_unstable_by_key(|(corner, _)| *corner);
+    let corners: Vec<DVec3> = corners.into_iter().map(|(_, place)| place).collect();
     let is_behind = |face: &Face| corners.iter().all(|c| face.height(*c) <= reach);
     let edges = skin.edges()?;
     let is_convex = skin.faces.iter().all(is_behind);

@@ -94,24 +94,29 @@ impl Convex {
         halves
     }
 
-    /// The part where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong to it.
-    pub fn above(&self, height: impl Fn(DVec3) -> f64, reach: f64) -> Convex {
-        let mut above = Self::EMPTY;
+    /// Leaves in `above` the part where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong to it.
+    pub fn part_above(&self, height: impl Fn(DVec3) -> f64, reach: f64, above: &mut Convex) {
+        above.len = 0;
         let Some(mut a) = self.corners().last().copied() else {
-            return above;
+            return;
         };
         let mut ha = height(a);
-        for b in self.corners().iter().copied() {
-            let hb = height(b);
+        for b in self.corners() {
+            let hb = height(*b);
             if (ha > reach && hb < -reach) || (ha < -reach && hb > reach) {
-                above.push(a + (b - a) * (ha / (ha - hb)));
+                above.push(a + (*b - a) * (ha / (ha - hb)));
             }
             if hb >= -reach {
-                above.push(b);
+                above.push(*b);
             }
-            (a, ha) = (b, hb);
+            (a, ha) = (*b, hb);
         }
-        above
+    }
+
+    /// Takes the corners of another.
+    pub fn copy(&mut self, other: &Convex) {
+        self.len = other.len;
+        self.corners[..other.len].copy_from_slice(other.corners());
     }
 
     /// Splits into quads and triangles: fans of quads from the first corner. Nothing from nothing.

@@ -1,7 +1,7 @@
 //! What an occluder does to all lines between two facets at once: an exact answer where it meets none of them, or all.
 
-use super::convex::Convex;
 use super::occluder::{Edge, Occluder, Planes, Sides};
+use glam::DVec3;
 
 /// What an occluder does to the lines between two facets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,11 +15,18 @@ pub(super) enum Effect {
 }
 
 impl Occluder {
-    /// What it does to the lines from all corners of one facet to all of another, which lie on the given sides; of a body, outside.
+    /// What it does to the lines from all corners of one facet to all of another, the `ends`, which lie on the given sides; of a body,
+    /// outside.
     ///
     /// The volume spanned by an edge and the ends of a line is linear in either end. So if no line between corners passes
     /// an edge of the silhouette on the inside, no line between the facets does, and what all corners see through it, all points do.
-    pub fn effect(&self, lines: &Lines, [from, to]: [Sides; 2], extent: f64) -> Effect {
+    pub fn effect(
+        &self,
+        lines: &Lines,
+        ends: [&[DVec3]; 2],
+        [from, to]: [Sides; 2],
+        extent: f64,
+    ) -> Effect {
         if from.share_a_front(to) || (!self.is_body() && (from.is_on() || to.is_on())) {
             return Effect::None;
         }
@@ -50,7 +57,7 @@ impl Occluder {
                 planes = planes.without(k);
             }
         }
-        if !self.is_body() && !self.is_between(lines, [from, to]) {
+        if !self.is_body() && !ends.iter().all(|points| self.is_clear_of(points)) {
             Effect::Some(planes)
         } else if (0..2).any(|side| all_inside[side] && has_silhouette[side]) {
             Effect::All
@@ -58,19 +65,10 @@ impl Occluder {
             Effect::Some(planes.without_own())
         }
     }
-
-    /// Whether the ends of all lines keep clear of the plane of a surface.
-    fn is_between(&self, lines: &Lines, sides: [Sides; 2]) -> bool {
-        sides.iter().all(|sides| sides.front != 0)
-            && self.is_clear_of(lines.from.corners())
-            && self.is_clear_of(lines.to.corners())
-    }
 }
 
 /// The lines from all corners of one polygon to all of another.
 pub(super) struct Lines {
-    from: Convex,
-    to: Convex,
     count: usize,
     /// Direction and moment, component by component, so that several are done at once.
     components: [[f64; Self::MOST]; 6],
@@ -82,20 +80,18 @@ impl Lines {
 
     /// No lines.
     pub const NONE: Self = Self {
-        from: Convex::EMPTY,
-        to: Convex::EMPTY,
         count: 0,
         components: [[0.0; Self::MOST]; 6],
     };
 
     /// Takes the lines between two polygons.
-    pub fn set(&mut self, from: &Convex, to: &Convex) {
-        (self.from, self.to, self.count) = (*from, *to, 0);
-        if from.corners().len() * to.corners().len() > Self::MOST {
+    pub fn set(&mut self, from: &[DVec3], to: &[DVec3]) {
+        self.count = 0;
+        if from.len() * to.len() > Self::MOST {
             return;
         }
-        for x in from.corners() {
-            for y in to.corners() {
+        for x in from {
+            for y in to {
                 let (along, moment) = (*y - *x, x.cross(*y));
                 let values = [along.x, along.y, along.z, moment.x, moment.y, moment.z];
                 for (list, value) in self.components.iter_mut().zip(values) {
@@ -126,8 +122,9 @@ impl Lines {
 
 #[cfg(test)]
 mod tests {
+    use super::super::convex::Convex;
+    use super::super::facet::Facet;
     use super::*;
-    use glam::DVec3;
 
     fn square(height: f64, size: f64, x: f64) -> Vec<DVec3> {
         [[-size, -size], [size, -size], [size, size], [-size, size]]
@@ -135,15 +132,23 @@ mod tests {
             .to_vec()
     }
 
-    fn effect(occluder: &Occluder, from: &[DVec3], to: &[DVec3]) -> Effect {
+    fn effect(occluder: &Occluder, from: &Facet, to: &Facet) -> Effect {
         let mut lines = Lines::NONE;
-        lines.set(&Convex::new(from), &Convex::new(to));
-        occluder.effect(&lines, [from, to].map(|c| occluder.sides(c)), 4.0)
+        lines.set(from.corners(), to.corners());
+        let sides = [from, to].map(|facet| occluder.sides(facet));
+        occluder.effect(&lines, [from, to].map(|facet| facet.corners()), sides, 4.0)
     }
 
     #[test]
     fn a_square_between_two_squares() {
-        let (below, above) = (square(0.0, 1.0, 0.0), square(2.0, 1.0, 0.0));
+        let facet = |height| {
+            let mut corners = square(height, 1.0, 0.0);
+            if height > 0.0 {
+                corners.reverse();
+            }
+            Facet::new(Convex::new(&corners)).expect("has an area")
+        };
+        let (below, above) = (facet(0.0), facet(2.0));
         // How many of the four edges matter.
         let edges_of = |effect: Effect| match effect {
             Effect::None => None,

@@ -4,7 +4,6 @@ use super::certificate::{Certificate, Tally};
 use super::pair::{Exchange, Kind, Worker};
 use super::rows::{Row, Rows};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
-use super::unhindered::Ranges;
 use super::{MatrixError, Options};
 use crate::scene::NamedScene;
 use crate::threads::pool;
@@ -103,8 +102,7 @@ impl Enclosure {
             std::iter::repeat_n(budget, facets.len())
         });
         let budgets = budgets.collect();
-        let ranges = Ranges::new(options.tolerance);
-        let space = Space::new(facets, occluders, extent, budgets, ranges, visibility);
+        let space = Space::new(facets, occluders, extent, budgets, visibility);
         let keep = rows.list.len() <= MOST_KEPT;
         Ok(Self {
             rows,
@@ -242,8 +240,8 @@ impl Enclosure {
             .iter_mut()
             .for_each(|value| *value /= area.max(f64::MIN_POSITIVE));
         let sum = values.iter().sum();
-        let quadrature: f64 =
-            values.iter().map(|v| v * v).sum::<f64>() * self.space.ranges.accuracy.powi(2);
+        let accuracy = self.accuracy(row);
+        let quadrature: f64 = values.iter().map(|v| v * v).sum::<f64>() * accuracy.powi(2);
         let error = (squares / (area * area) + quadrature).sqrt();
         certificate.add(row, sum, error, limited);
         sink(&FormFactors {
@@ -297,6 +295,12 @@ impl Enclosure {
         work.limited.dedup();
         work.tally.rays = worker.rays - rays_before;
         work
+    }
+
+    /// The relative error that unhindered entries of a row may have.
+    fn accuracy(&self, row: usize) -> f64 {
+        let first = self.rows.of_row[row].clone().next();
+        first.map_or(0.0, |facet| self.space.budgets[facet as usize].accuracy)
     }
 
     /// The row that a facet belongs to.

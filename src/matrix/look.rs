@@ -2,7 +2,7 @@
 
 use super::convex::Convex;
 use super::facet::Facet;
-use super::gauss::each_node;
+use super::gauss::{each_more, each_node};
 use super::occluder::Between;
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
@@ -38,6 +38,14 @@ impl Sums {
         self.visible == self.all
     }
 
+    fn times(self, factor: f64) -> Self {
+        Self {
+            visible: self.visible * factor,
+            all: self.all * factor,
+            squares: self.squares * factor,
+        }
+    }
+
     /// Whether all points see the same: everything, or nothing.
     pub fn is_plain(&self) -> bool {
         self.sees_all() || self.visible == 0.0
@@ -52,13 +60,21 @@ impl Sums {
     }
 }
 
+impl std::ops::Add for Sums {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            visible: self.visible + other.visible,
+            all: self.all + other.all,
+            squares: self.squares + other.squares,
+        }
+    }
+}
+
 impl std::iter::Sum for Sums {
     fn sum<I: Iterator<Item = Self>>(iter: I) -> Self {
-        iter.fold(Self::default(), |a, b| Self {
-            visible: a.visible + b.visible,
-            all: a.all + b.all,
-            squares: a.squares + b.squares,
-        })
+        iter.fold(Self::default(), |a, b| a + b)
     }
 }
 
@@ -104,28 +120,38 @@ impl<'a> Eyes<'a> {
         }
     }
 
-    /// Looks from the points of a product rule on every tile.
-    pub fn look_all(&mut self, view: View<'_>, points: usize) -> Result<Sums, TooIntricate> {
+    /// Looks from the four points of the product rule on every tile.
+    pub fn look_all(&mut self, view: View<'_>) -> Result<Sums, TooIntricate> {
         let tiles = view.outer.shape.tiles();
-        tiles.map(|tile| self.look(view, &tile, points)).sum()
+        tiles.map(|tile| self.look(view, &tile)).sum()
     }
 
     /// The same on one tile.
-    pub fn look(
+    pub fn look(&mut self, view: View<'_>, tile: &Convex) -> Result<Sums, TooIntricate> {
+        let mut sum = Ok(Sums::default());
+        each_node(tile, 2, |eye, weight| self.add(view, eye, weight, &mut sum));
+        sum
+    }
+
+    /// Looks from five more points on every tile, which make nine with those from which `four` were seen.
+    pub fn look_closer(&mut self, view: View<'_>, four: Sums) -> Result<Sums, TooIntricate> {
+        let mut sum = Ok(four.times(4.0 / 9.0));
+        for tile in view.outer.shape.tiles() {
+            each_more(&tile, |eye, weight| self.add(view, eye, weight, &mut sum));
+        }
+        sum
+    }
+
+    fn add(
         &mut self,
         view: View<'_>,
-        tile: &Convex,
-        points: usize,
-    ) -> Result<Sums, TooIntricate> {
-        let mut places = std::mem::take(&mut self.places);
-        places.clear();
-        each_node(tile, points, |eye, weight| places.push((eye, weight)));
-        let sums = places
-            .iter()
-            .map(|(eye, weight)| self.look_from(view, *eye, *weight))
-            .sum();
-        self.places = places;
-        sums
+        eye: DVec3,
+        weight: f64,
+        sum: &mut Result<Sums, TooIntricate>,
+    ) {
+        if let Ok(before) = sum {
+            *sum = self.look_from(view, eye, weight).map(|here| *before + here);
+        }
     }
 
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {

@@ -17,6 +17,9 @@ pub(super) struct Occluder {
     edges: Vec<Edge>,
     pub low: DVec3,
     pub high: DVec3,
+    /// A sphere around it.
+    centre: DVec3,
+    radius: f64,
     /// The surfaces of a body by their numbers, for what is not outside of it.
     pub members: Range<u32>,
     /// Whether it is one of the faces of a body.
@@ -38,9 +41,9 @@ pub(super) struct Edge {
     pub along: DVec3,
     pub moment: DVec3,
     pub length: f64,
-    /// The face around which it runs counter-clockwise, and the other.
-    left: u8,
-    right: u8,
+    /// The face around which it runs counter-clockwise, and the other, as bits.
+    left: u64,
+    right: u64,
 }
 
 /// On which sides of the faces of an occluder something lies, a bit a face; in the plane of a face is both.
@@ -48,6 +51,13 @@ pub(super) struct Edge {
 pub(super) struct Sides {
     pub front: u64,
     pub back: u64,
+}
+
+/// An occluder that may come between a facet and others, by its number, with the sides of its faces on which the facet lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    pub occluder: u32,
+    pub sides: Sides,
 }
 
 /// An occluder that may come between a pair, by its number, the planes of its shadows that matter there, and on which sides the two
@@ -143,25 +153,24 @@ impl Edge {
             along: b - a,
             moment: a.cross(b),
             length: a.distance(b),
-            left: left as u8,
-            right: right as u8,
+            left: 1 << left,
+            right: 1 << right,
         }
     }
 
     /// Whether all eyes on these sides see the edge as part of the silhouette: 1 with its left face, -1 with its right one, 0 not at all; `None`
     /// where that depends on the eye.
     pub fn turn(&self, sides: Sides) -> Option<f64> {
-        let seen = |face: u8| match (sides.front >> face & 1, sides.back >> face & 1) {
-            (1, 0) => Some(1.0),
-            (_, 1) => Some(0.0),
+        let seen = |face: u64| match (sides.front & face != 0, sides.back & face != 0) {
+            (true, false) => Some(1.0),
+            (_, true) => Some(0.0),
             _ => None,
         };
         Some(seen(self.left)? - seen(self.right)?)
     }
 
     fn turn_from(&self, seen: u64) -> f64 {
-        let bit = |face: u8| (seen >> face & 1) as f64;
-        bit(self.left) - bit(self.right)
+        f64::from(seen & self.left != 0) - f64::from(seen & self.right != 0)
     }
 }
 
@@ -190,7 +199,11 @@ impl Occluder {
         members: Range<u32>,
     ) -> Self {
         let (low, high) = polygon::bounds(&corners);
+        let centre = (low + high) * 0.5;
+        let distances = corners.iter().map(|c| c.distance(centre));
         Self {
+            centre,
+            radius: distances.fold(0.0, f64::max),
             corners,
             faces,
             edges,
@@ -221,19 +234,22 @@ impl Occluder {
         self.faces[0]
     }
 
+    /// Whether it keeps clear of everything within `width` of the line between two points.
+    pub fn is_beside(&self, [a, b]: [DVec3; 2], width: f64) -> bool {
+        let (along, from) = (b - a, self.centre - a);
+        let place = from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+        let aside = (from - along * place.clamp(0.0, 1.0)).length_squared();
+        aside >= (self.radius + width).powi(2)
+    }
+
     /// Whether a point lies behind a surface.
     pub fn is_seen_from_behind(&self, point: DVec3) -> bool {
         !self.is_body() && self.faces[0].height(point) <= 0.0
     }
 
-    /// Where a set of points lies.
-    pub fn sides(&self, points: &[DVec3]) -> Sides {
-        self.sides_by(|face| {
-            let heights = points.iter().map(|p| face.height(*p));
-            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                (l.min(x), h.max(x))
-            })
-        })
+    /// Where a facet lies.
+    pub fn sides(&self, facet: &Facet) -> Sides {
+        self.sides_by(|face| facet.range_over(face.normal, face.offset))
     }
 
     /// Where a box lies.
@@ -280,12 +296,12 @@ impl Occluder {
         self.corners.iter().any(|c| facet.height(*c) > thickness)
     }
 
-    /// Whether the ends of all lines between two sets of points keep clear of a surface's plane.
+    /// Whether points keep clear of a surface's plane, all on one side.
     pub fn is_clear_of(&self, points: &[DVec3]) -> bool {
         let front = &self.faces[0];
-        points
-            .iter()
-            .all(|p| front.height(*p).abs() > front.thickness)
+        let mut heights = points.iter().map(|p| front.height(*p));
+        let clear = |h: f64| h > front.thickness;
+        heights.clone().all(clear) || heights.all(|h| clear(-h))
     }
 
     /// Hands out the half-spaces, those of `wanted`, whose common part is all that it hides from `eye` of something on the given `sides`,
@@ -340,8 +356,8 @@ const ROUNDING: f64 = 1e-12;
 /// A plane; the normal need not have length 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
-    normal: DVec3,
-    offset: f64,
+    pub normal: DVec3,
+    pub offset: f64,
     /// Points no higher lie on it.
     pub reach: f64,
 }

@@ -5,7 +5,7 @@ use super::facet::{Facet, Part};
 use super::join::joined;
 use super::occluder::Occluder;
 use super::tree::Tree;
-use super::unhindered::{Nodes, Ranges};
+use super::unhindered::Nodes;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
@@ -21,6 +21,12 @@ const TOUCH: f64 = 1e-7;
 
 /// Corners no higher over a plane than this fraction of the extent lie in it.
 const HORIZON: f64 = 1e-7;
+
+/// Of the tolerance of a row, what the errors of the formulas may come to that serve where nothing lies between.
+const UNHINDERED: f64 = 0.1;
+
+/// No unhindered exchange may be off by more than this, however little of its row it is.
+const LEAST_ACCURATE_UNHINDERED: f64 = 1e-3;
 
 /// No visible share may be off by more than this, however little of its row it is.
 const LEAST_ACCURATE: f64 = 0.02;
@@ -43,8 +49,6 @@ pub(super) struct Space {
     pub horizon: f64,
     /// How accurate the row of each facet must be.
     pub budgets: Vec<Budget>,
-    /// Which formula serves where nothing lies between.
-    pub ranges: Ranges,
     pub visibility: Box<dyn Visibility>,
 }
 
@@ -54,7 +58,6 @@ impl Space {
         occluders: Vec<Occluder>,
         extent: f64,
         budgets: Vec<Budget>,
-        ranges: Ranges,
         visibility: Box<dyn Visibility>,
     ) -> Self {
         Self {
@@ -65,7 +68,6 @@ impl Space {
             extent,
             horizon: HORIZON * extent,
             budgets,
-            ranges,
             visibility,
         }
     }
@@ -79,24 +81,35 @@ pub(super) struct Budget {
     relative: f64,
     /// Of any exchange, as far as equal errors go.
     absolute: f64,
+    /// Of what any pair exchanges unhindered, relative.
+    pub accuracy: f64,
 }
 
 impl Budget {
     /// For a row of the given area and length (see [`row_lengths`]), one of `count`.
     pub fn new(tolerance: f64, area: f64, length: f64, count: usize) -> Self {
-        let tolerance = 0.5 * tolerance;
+        let relative = tolerance / length.max(f64::MIN_POSITIVE);
         Self {
-            relative: tolerance / length.max(f64::MIN_POSITIVE),
-            absolute: tolerance * area / (count as f64).sqrt(),
+            relative: 0.5 * relative,
+            absolute: 0.5 * tolerance * area / (count as f64).sqrt(),
+            accuracy: (UNHINDERED * relative).min(LEAST_ACCURATE_UNHINDERED),
         }
     }
 }
 
 impl Space {
+    /// The relative error that what a pair exchanges unhindered may have.
+    pub fn accuracy(&self, i: u32, j: u32) -> f64 {
+        let [i, j] = [i, j].map(|k| self.budgets[k as usize].accuracy);
+        i.min(j)
+    }
+
     /// The error that the visible share of a pair may have that would exchange `whole` unhindered.
     pub fn share_tolerance(&self, i: u32, j: u32, whole: f64) -> f64 {
         let share = |k: u32| {
-            let Budget { relative, absolute } = self.budgets[k as usize];
+            let Budget {
+                relative, absolute, ..
+            } = self.budgets[k as usize];
             relative + absolute / whole
         };
         share(i).min(share(j)).min(LEAST_ACCURATE)

@@ -10,12 +10,23 @@ use std::ops::Range;
 const MOST_FRAGMENTS: usize = 128;
 
 /// Room for fragments and planes, reused from point to point.
-#[derive(Default)]
 pub(super) struct Cutter {
     /// The planes of all shadows, one after the other.
     planes: Vec<Plane>,
     shadows: Vec<Range<usize>>,
     fragments: Vec<Convex>,
+    covered: (Convex, Convex),
+}
+
+impl Default for Cutter {
+    fn default() -> Self {
+        Self {
+            planes: Vec::new(),
+            shadows: Vec::new(),
+            fragments: Vec::new(),
+            covered: (Convex::EMPTY, Convex::EMPTY),
+        }
+    }
 }
 
 /// The shape has become too intricate to cut further.
@@ -98,7 +109,6 @@ impl Cutter {
     fn shadow(&mut self, eye: DVec3, sight: Sight<'_>, between: &Between) -> Shadow {
         let begin = self.planes.len();
         let (mut has_planes, mut misses) = (false, false);
-        let corners = sight.facet.corners();
         let Between {
             occluder,
             planes,
@@ -106,12 +116,7 @@ impl Cutter {
         } = between;
         let occluder = &sight.occluders[*occluder as usize];
         occluder.shadow(eye, *planes, sides[sight.there], sight.extent, |plane| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for corner in corners {
-                let height = plane.height(*corner);
-                low = if height < low { height } else { low };
-                high = if height > high { height } else { high };
-            }
+            let (low, high) = sight.facet.range_over(plane.normal, plane.offset);
             has_planes = true;
             misses = high <= plane.reach;
             if !misses && low < -plane.reach {
@@ -136,24 +141,31 @@ impl Cutter {
         facet: &Facet,
         measure: impl Fn(&[DVec3]) -> f64,
     ) -> Result<f64, TooIntricate> {
-        let mut covered = facet.shape;
+        let [mut from, mut to] = [&mut self.covered.0, &mut self.covered.1];
+        from.copy(&facet.shape);
         for plane in &self.planes[begin..] {
-            if covered.is_full() {
+            if from.is_full() {
                 return Err(TooIntricate);
             }
-            covered = covered.above(|c| plane.height(c), plane.reach);
-            if covered.is_empty() {
+            from.part_above(|c| plane.height(c), plane.reach, to);
+            if to.is_empty() {
                 self.planes.truncate(begin);
                 return Ok(0.0);
             }
+            std::mem::swap(&mut from, &mut to);
+        }
+        let is_first = self.shadows.is_empty();
+        self.shadows.push(begin..self.planes.len());
+        if is_first {
+            return Ok(measure(from.corners()));
         }
         self.fragments.clear();
-        self.fragments.push(covered);
-        for earlier in &self.shadows {
+        self.fragments.push(*from);
+        for earlier in &self.shadows[..self.shadows.len() - 1] {
             subtract(&self.planes[earlier.clone()], &mut self.fragments)?;
         }
-        self.shadows.push(begin..self.planes.len());
-        Ok(self.fragments.iter().map(|part| measure(part.corners())).sum())
+        let fragments = self.fragments.iter();
+        Ok(fragments.map(|part| measure(part.corners())).sum())
     }
 }
 
@@ -247,7 +259,7 @@ mod tests {
         let between = |(k, occluder): (usize, &Occluder)| Between {
             occluder: k as u32,
             planes: Planes::ALL,
-            sides: [Sides::default(), occluder.sides(facet.corners())],
+            sides: [Sides::default(), occluder.sides(&facet)],
         };
         let between: Vec<_> = occluders.iter().enumerate().map(between).collect();
         let sight = Sight {
