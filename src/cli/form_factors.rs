@@ -3,11 +3,13 @@
 use super::CliError;
 use super::error::Code;
 use super::heat::{self, write_radiosity};
+use super::progress::leave_nothing_on_interrupt;
 use super::say;
 use super::values::{named, not_negative, positive};
-use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
+use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
-    Dropped, MatrixTable, Sink, write_atomically, write_matrix_csv, write_matrix_market, write_npz,
+    Dropped, MatrixTable, Sink, check_writable, write_atomically, write_matrix_csv,
+    write_matrix_market, write_npz,
 };
 use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
@@ -53,6 +55,9 @@ pub(super) struct Arguments {
     threads: usize,
 }
 
+/// Rows named in a warning.
+const NAMED: usize = 5;
+
 /// What can be enforced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Law {
@@ -82,12 +87,15 @@ struct Report<'a> {
     dropped: Option<Dropped>,
     labels: Vec<&'a str>,
     areas_m2: Vec<f64>,
+    covered_m2: Vec<f64>,
     warnings: &'a [String],
     seconds: f64,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
+    check_writable(&arguments.output)?;
+    leave_nothing_on_interrupt();
     let named = NamedScene::load(&arguments.scene)?;
     let heat = arguments
         .temperatures
@@ -114,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     };
     let (certificate, dropped, correction) =
         if arguments.enforce.is_some() || arguments.solve || heat.is_some() {
-            // What needs the whole matrix has it in memory, 8 n² bytes.
+            check_memory(enclosure.rows().len())?;
             let mut matrix = enclosure.matrix();
             let correction = match arguments.enforce {
                 Some(Law::Closure) => Some(matrix.enforce_closure()?),
@@ -137,6 +145,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
             let (certificate, dropped) = write(format, arguments, &table, feed)?;
             (certificate, dropped, None)
         };
+    let mut warnings = enclosure.warnings().to_vec();
+    warnings.extend(blindness(&certificate, table.rows));
+    for warning in &warnings[enclosure.warnings().len()..] {
+        say::warning(warning);
+    }
     let report = Report {
         scene: table.scene,
         options: described(arguments),
@@ -146,7 +159,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         dropped,
         labels: table.rows.iter().map(|row| row.label.as_str()).collect(),
         areas_m2: table.rows.iter().map(|row| row.area).collect(),
-        warnings: enclosure.warnings(),
+        covered_m2: table.rows.iter().map(|row| row.covered).collect(),
+        warnings: &warnings,
         seconds: started.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_vec_pretty(&report).map_err(|e| CliError::System(e.to_string()))?;
@@ -155,6 +169,40 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     })?;
     print!("{}", summary(&report));
     Ok(Code::Success)
+}
+
+/// Refuses a matrix for which there is no memory, 8 n² bytes, before it has been worked out.
+fn check_memory(rows: usize) -> Result<(), CliError> {
+    let room = Vec::<f64>::new().try_reserve_exact(rows.saturating_mul(rows));
+    room.map_err(|_| {
+        CliError::System(format!(
+            "no memory for all {rows} x {rows} entries at once ({:.1} GiB), which --enforce, --solve and --temperatures need",
+            8.0 * (rows as f64).powi(2) / f64::from(1 << 30)
+        ))
+    })
+}
+
+/// Rows that see nothing, though nothing covers them, are most often turned the wrong way.
+fn blindness(certificate: &Certificate, rows: &[Row]) -> Option<String> {
+    let blind: Vec<&str> = certificate
+        .blind_rows()
+        .map(|row| rows[row].label.as_str())
+        .collect();
+    let what = match blind.len() {
+        0 => return None,
+        count if count == rows.len() => "no row sees any other".to_owned(),
+        count => {
+            let named = blind[..count.min(NAMED)].join("`, `");
+            let others = if count > NAMED { ", …" } else { "" };
+            format!(
+                "{count} of {} rows see no other (`{named}`{others})",
+                rows.len()
+            )
+        }
+    };
+    Some(format!(
+        "{what}: surfaces radiate from the side from which their corners run counter-clockwise; if that is the wrong one, turn them or say sides = \"both\" in the scene.toml"
+    ))
 }
 
 fn format_of(path: &Path) -> Result<Format, CliError> {
@@ -261,6 +309,14 @@ fn summary(report: &Report<'_>) -> String {
         pairs.sampled,
         pairs.rays,
     );
+    let covered = report.covered_m2.iter().filter(|area| **area > 0.0);
+    if covered.clone().count() > 0 {
+        text += &format!(
+            "covered: {:.4} m^2 on {} rows, which something stands on or encloses; that area does not count\n",
+            covered.clone().sum::<f64>(),
+            covered.count(),
+        );
+    }
     if let Some(correction) = &report.correction {
         text += &format!(
             "enforced: entries changed by {:.1e} at most, {:.1e} rms; row sums within {:.1e} of 1\n",

@@ -4,7 +4,8 @@
 //! around one flat opening, if any, the faces bound a convex body; a line that comes in through the opening leaves through a face, so the
 //! opening hides as much as the rest.
 
-use super::occluder::{Edge, Face, Occluder};
+use super::occluder::Occluder;
+use super::silhouette::{Edge, Face};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -153,7 +154,10 @@ impl Skin {
         let points: Vec<DVec3> = outline.iter().map(|c| self.places[c]).collect();
         let opening = Face::new(&points, thickness)?;
         for (k, corner) in outline.iter().enumerate() {
-            self.add([*corner, outline[(k + 1) % outline.len()]], self.faces.len())?;
+            self.add(
+                [*corner, outline[(k + 1) % outline.len()]],
+                self.faces.len(),
+            )?;
         }
         self.faces.push(opening);
         (opening.warp(&points) <= reach).then_some(())

@@ -1,6 +1,7 @@
 //! What an occluder does to all lines between two facets at once: an exact answer where it meets none of them, or all.
 
-use super::occluder::{Edge, Occluder, Planes, Sides};
+use super::occluder::Occluder;
+use super::silhouette::{Edge, Planes, Sides};
 use glam::DVec3;
 
 /// What an occluder does to the lines between two facets.

@@ -1,6 +1,9 @@
 //! A scene made ready, and its matrix row by row.
 
 use super::certificate::{Certificate, Tally};
+use super::covered::Covers;
+use super::divide::check_count;
+use super::facet::Facet;
 use super::pair::{Exchange, Kind, Worker};
 use super::rows::{Row, Rows};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
@@ -67,11 +70,12 @@ impl Enclosure {
     /// Makes a scene ready.
     ///
     /// # Errors
-    /// When no surface radiates, an option cannot be met, or the visibility engine cannot be built.
+    /// When no surface radiates, there are more than 200,000 of them, an option cannot be met, or the visibility engine cannot be built.
     pub fn new(named: &NamedScene, options: &Options) -> Result<Self, MatrixError> {
         options.check()?;
         let pool = pool(options.threads)?;
         let scene = &named.scene;
+        check_count(scene, options.max_area)?;
         let frame = scene.frame();
         let positions = scene.positions_in(&frame);
         let visibility = build(
@@ -79,20 +83,28 @@ impl Enclosure {
             &triangles(scene, &positions),
             pool.current_num_threads(),
         )?;
-        let mut rows = pool.install(|| Rows::new(named, &frame, options));
+        let extent = frame.extent();
+        let occluders = occluders(scene, &positions, extent);
+        let covers = Covers {
+            scene,
+            positions: &positions,
+            occluders: &occluders,
+            visibility: visibility.as_ref(),
+            extent,
+        };
+        let cover = |facets: &[Facet]| covers.covered(facets);
+        let mut rows = pool.install(|| Rows::new(named, &frame, options, cover));
         if rows.list.is_empty() {
             return Err(MatrixError::NothingRadiates);
         }
         let mut warnings = scene.warnings.clone();
-        warnings.extend(super::overlap::overlaps(named, &positions, frame.extent()));
+        warnings.extend(super::overlap::overlaps(named, &positions, extent));
         if rows.unsplit > 0 {
             warnings.push(format!(
                 "{} surfaces not split where others meet them: entries there converge slowly",
                 rows.unsplit
             ));
         }
-        let extent = frame.extent();
-        let occluders = occluders(scene, &positions, extent);
         let facets = std::mem::take(&mut rows.facets);
         let lengths = pool.install(|| row_lengths(&facets, &rows.of_row));
         let count = rows.list.len();
@@ -242,7 +254,10 @@ impl Enclosure {
         let sum = values.iter().sum();
         let accuracy = self.accuracy(row);
         let quadrature: f64 = values.iter().map(|v| v * v).sum::<f64>() * accuracy.powi(2);
-        let error = (squares / (area * area) + quadrature).sqrt();
+        let error = match area > 0.0 {
+            true => (squares / (area * area) + quadrature).sqrt(),
+            false => 0.0,
+        };
         certificate.add(row, sum, error, limited);
         sink(&FormFactors {
             index: row,
@@ -258,6 +273,7 @@ impl Enclosure {
         let start = || Worker::new(&self.space);
         self.pool.install(|| {
             rows.into_par_iter()
+                .with_max_len(1)
                 .map_init(start, |worker, row| self.work_row(worker, row, pairs))
                 .collect()
         })

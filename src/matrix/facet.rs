@@ -61,16 +61,19 @@ impl Facet {
     /// Least and greatest height of the corners over the plane where `normal` · x = `offset`, in units of the normal's length.
     pub fn range_over(&self, normal: DVec3, offset: f64) -> (f64, f64) {
         let [x, y, z] = &self.columns;
-        let h: [f64; 4] = std::array::from_fn(|k| {
-            normal.x * x[k] + normal.y * y[k] + normal.z * z[k] - offset
-        });
+        let h: [f64; 4] =
+            std::array::from_fn(|k| normal.x * x[k] + normal.y * y[k] + normal.z * z[k] - offset);
         let least = |a: f64, b: f64| if a < b { a } else { b };
         let most = |a: f64, b: f64| if a > b { a } else { b };
         let first = (
             least(least(h[0], h[1]), least(h[2], h[3])),
             most(most(h[0], h[1]), most(h[2], h[3])),
         );
-        let others = self.corners().iter().skip(4).map(|c| normal.dot(*c) - offset);
+        let others = self
+            .corners()
+            .iter()
+            .skip(4)
+            .map(|c| normal.dot(*c) - offset);
         others.fold(first, |(low, high), h| (least(h, low), most(h, high)))
     }
 

@@ -63,7 +63,13 @@ pub(super) fn each_more(tile: &Convex, mut node: impl FnMut(DVec3, f64)) {
     // ⟨x²⟩ = 1/3 on [-1, 1] asks for 2 x² + 4/3 = 9/3 of them.
     let aside = 0.5 * (5.0f64 / 6.0).sqrt();
     let corners = tile.quad();
-    for [u, v] in [[0.0, 0.0], [-aside, 0.0], [aside, 0.0], [0.0, -aside], [0.0, aside]] {
+    for [u, v] in [
+        [0.0, 0.0],
+        [-aside, 0.0],
+        [aside, 0.0],
+        [0.0, -aside],
+        [0.0, aside],
+    ] {
         let (point, area) = place(corners, 0.5 + u, 0.5 + v);
         node(point, area / 9.0);
     }

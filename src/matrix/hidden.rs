@@ -125,7 +125,9 @@ impl<'a> Looker<'a> {
             order.clear();
             order.extend_from_slice(between);
             let occluders = &self.space.occluders;
-            order.sort_by_key(|it| occluders[it.occluder as usize].is_seen_from_behind(eye.centroid));
+            order.sort_by_key(|it| {
+                occluders[it.occluder as usize].is_seen_from_behind(eye.centroid)
+            });
         }
         let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
         let view = |outer, inner, k: usize| View {
@@ -212,7 +214,11 @@ impl<'a> Looker<'a> {
         let mut refined = Refined::default();
         let is_one = view.outer.shape.tiles().count() == 1;
         for tile in view.outer.shape.tiles() {
-            let here = if is_one { coarse } else { self.eyes.look(view, &tile)? };
+            let here = if is_one {
+                coarse
+            } else {
+                self.eyes.look(view, &tile)?
+            };
             refined.add(self.refine(view, &tile, here, tolerance * view.whole, 0)?);
         }
         Ok(refined.share_of(view.whole))

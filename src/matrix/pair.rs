@@ -1,9 +1,10 @@
 //! What two facets exchange: nothing, all that they would unhindered, or the visible share of it.
 
+use super::effect::{Effect, Lines};
 use super::facet::Facet;
 use super::hidden::{Looker, Share};
-use super::effect::{Effect, Lines};
-use super::occluder::{Between, Near, Sides};
+use super::occluder::{Between, Near};
+use super::silhouette::Sides;
 use super::space::Space;
 use super::unhindered::exchange;
 

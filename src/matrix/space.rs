@@ -133,7 +133,7 @@ pub(super) fn row_lengths(facets: &[Facet], of_row: &[Range<u32>]) -> Vec<f64> {
     let length = |range: &Range<u32>| {
         let members = &facets[range.start as usize..range.end as usize];
         let area: f64 = members.iter().map(|facet| facet.area).sum();
-        members.iter().map(square).sum::<f64>().sqrt() / area
+        members.iter().map(square).sum::<f64>().sqrt() / area.max(f64::MIN_POSITIVE)
     };
     of_row.par_iter().map(length).collect()
 }

@@ -2,7 +2,8 @@
 
 use super::convex::Convex;
 use super::facet::Facet;
-use super::occluder::{Between, Occluder, Plane};
+use super::occluder::{Between, Occluder};
+use super::silhouette::Plane;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -240,7 +241,7 @@ fn cut_out(
 
 #[cfg(test)]
 mod tests {
-    use super::super::occluder::{Planes, Sides};
+    use super::super::silhouette::{Planes, Sides};
     use super::super::unhindered::seen;
     use super::*;
 

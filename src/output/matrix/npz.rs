@@ -8,7 +8,7 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
+/// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` and `covered` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
 /// (pairs of row and column, from 0). `numpy.load` reads them.
 ///
 /// # Errors
@@ -25,8 +25,10 @@ pub fn write_npz(
         begin(&mut zip, "F", "<f8", &[n, n])?;
         let known = feed(&mut |row| floats(&mut zip, row.values))?;
         let areas: Vec<f64> = table.rows.iter().map(|row| row.area).collect();
+        let covered: Vec<f64> = table.rows.iter().map(|row| row.covered).collect();
         for (name, values) in [
             ("area", &areas),
+            ("covered", &covered),
             ("row_sum", &known.row_sums),
             ("row_error", &known.row_errors),
         ] {
