@@ -15,6 +15,7 @@ use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -23,10 +24,10 @@ use std::time::Instant;
 pub(super) struct Arguments {
     /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; materials are not needed
     scene: PathBuf,
-    /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it
+    /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it, into FILE.certificate.json (without FILE's own ending)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// What a row stands for: a surface, a group (g or o) or a material
+    /// What a row stands for: surface (a polygon, or a part of it), group (below one g or o) or material
     #[arg(long, default_value = "surface", value_parser = named::<By>)]
     by: By,
     /// Divide surfaces until no part is larger (m²)
@@ -38,7 +39,7 @@ pub(super) struct Arguments {
     /// Change the matrix so that this holds exactly, by least squares; says by how much
     #[arg(long, value_name = "LAW")]
     enforce: Option<Law>,
-    /// Solve for radiosity and net flux with the materials' reflectance and emission: FILE.radiosity.csv
+    /// Solve for radiosity and net flux with the materials' reflectance and emission, into FILE.radiosity.csv
     #[arg(long)]
     solve: bool,
     /// The same for heat: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
@@ -78,7 +79,7 @@ enum Format {
 #[derive(Serialize)]
 struct Report<'a> {
     scene: &'a str,
-    options: [(&'static str, String); 4],
+    options: BTreeMap<&'static str, String>,
     closed: bool,
     certificate: &'a Certificate,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -94,8 +95,8 @@ struct Report<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
-    check_writable(&arguments.output)?;
     leave_nothing_on_interrupt();
+    check_writable(&arguments.output)?;
     let named = NamedScene::load(&arguments.scene)?;
     let heat = arguments
         .temperatures
@@ -152,7 +153,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     }
     let report = Report {
         scene: table.scene,
-        options: described(arguments),
+        options: described(arguments).into(),
         closed: certificate.is_closed(),
         certificate: &certificate,
         correction,
@@ -312,7 +313,7 @@ fn summary(report: &Report<'_>) -> String {
     let covered = report.covered_m2.iter().filter(|area| **area > 0.0);
     if covered.clone().count() > 0 {
         text += &format!(
-            "covered: {:.4} m^2 on {} rows, which something stands on or encloses; that area does not count\n",
+            "covered: {:.4} m^2 in {} of the rows, on which something stands or which lies in a solid: that area does not count\n",
             covered.clone().sum::<f64>(),
             covered.count(),
         );

@@ -15,9 +15,9 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Up to this many rows the exchanges of all pairs are kept (1 GiB) and each is worked out once; beyond it twice, so that memory
+/// Up to this many rows the exchanges of all pairs are kept (1.5 GiB) and each is worked out once; beyond it twice, so that memory
 /// grows with the number of rows and not with its square.
-const MOST_KEPT: usize = 16_000;
+const MOST_KEPT: usize = 20_000;
 
 /// Rows worked out together beyond that, for each thread.
 const BLOCK: usize = 16;
@@ -140,7 +140,7 @@ impl Enclosure {
         self.space.visibility.info()
     }
 
-    /// Has every pair worked out when either of its rows comes up rather than once, as beyond 16,000 rows; for tests.
+    /// Has every pair worked out when either of its rows comes up rather than once, as beyond 20,000 rows; for tests.
     #[doc(hidden)]
     pub fn without_keeping(mut self) -> Self {
         self.keep = false;
@@ -273,6 +273,7 @@ impl Enclosure {
         let start = || Worker::new(&self.space);
         self.pool.install(|| {
             rows.into_par_iter()
+                // Rows are worth a millisecond and more, the first far more than the last.
                 .with_max_len(1)
                 .map_init(start, |worker, row| self.work_row(worker, row, pairs))
                 .collect()
