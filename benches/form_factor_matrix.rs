@@ -27,7 +27,7 @@ const FINER: [f64; 5] = [0.0165, 0.00252, 0.00058, 0.00021, 0.000113];
 /// The largest area of the parts of a room of 1 m, for 40,560 of them.
 const STREAMED: f64 = 1.0 / 82.0 / 82.0;
 
-const TOLERANCES: [f64; 3] = [1e-3, 3e-4, 1e-4];
+const TOLERANCES: [f64; 3] = [1e-3, 2e-4, 1e-4];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -85,7 +85,7 @@ fn grow(streamed: bool) {
     };
     for area in areas {
         let (clock, before) = (Instant::now(), processor_seconds());
-        let enclosure = enclosure(&scene, *area, 3e-4);
+        let enclosure = enclosure(&scene, *area, TOLERANCES[1]);
         let certificate = enclosure.each_row(|_| Ok::<(), Infallible>(()));
         let certificate = certificate.unwrap_or_else(|never| match never {});
         let (low, high) = certificate.sum_range();
