@@ -8,8 +8,8 @@ use super::say;
 use super::values::{named, not_negative, positive};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
-    Dropped, MatrixTable, Sink, check_writable, write_atomically, write_matrix_csv,
-    write_matrix_market, write_npz,
+    Dropped, MatrixTable, Sink, check_writable, remove_abandoned, write_atomically,
+    write_matrix_csv, write_matrix_market, write_npz,
 };
 use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
@@ -97,6 +97,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
     leave_nothing_on_interrupt();
     check_writable(&arguments.output)?;
+    let folder = arguments.output.parent().filter(|it| *it != Path::new(""));
+    remove_abandoned(folder.unwrap_or(Path::new(".")));
     let named = NamedScene::load(&arguments.scene)?;
     let heat = arguments
         .temperatures

@@ -14,6 +14,7 @@ use super::look::{Eyes, Sums, View};
 use super::occluder::Between;
 use super::pair::Kind;
 use super::rays::Sampler;
+use super::silhouette::Planes;
 use super::space::Space;
 use super::unhindered::is_afar;
 use super::visible::TooIntricate;
@@ -109,7 +110,36 @@ impl<'a> Looker<'a> {
         {
             return share;
         }
+        // The outline of a round body has more corners than there is room for; each of its faces has few.
+        let faces = self.faces(facets, between);
+        if (between.len() + 1..=MOST_CUT).contains(&faces.len())
+            && let Ok(share) = self.cut(facets, &faces, whole, tolerance)
+        {
+            return share;
+        }
         self.sampler.share(facets, tolerance, key)
+    }
+
+    /// What lies between, with its faces in place of each body.
+    fn faces(&self, facets: [&Facet; 2], between: &[Between]) -> Vec<Between> {
+        let occluders = &self.space.occluders;
+        let mut faces = Vec::new();
+        for it in between {
+            let body = &occluders[it.occluder as usize];
+            if !body.is_body() {
+                faces.push(*it);
+            }
+            faces.extend(body.members.clone().filter_map(|member| {
+                let sides = facets.map(|facet| occluders[member as usize].sides(facet));
+                let is_between = !sides[0].share_a_front(sides[1]);
+                is_between.then_some(Between {
+                    occluder: member,
+                    planes: Planes::ALL,
+                    sides,
+                })
+            }));
+        }
+        faces
     }
 
     fn cut(

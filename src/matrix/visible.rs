@@ -16,6 +16,7 @@ pub(super) struct Cutter {
     planes: Vec<Plane>,
     shadows: Vec<Range<usize>>,
     fragments: Vec<Convex>,
+    /// What a shadow covers of the facet, plane by plane: before the next, and after.
     covered: (Convex, Convex),
 }
 

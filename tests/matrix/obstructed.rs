@@ -174,6 +174,37 @@ fn a_room_with_a_block_in_its_air_is_closed() {
     assert_closed(&matrix(&hanging_block()), 5e-4);
 }
 
+#[test]
+fn a_round_body_is_cut_out_too() {
+    // A prism of 20 sides in the air of a room, whose outline has more corners than a shadow may have.
+    let mut scene = quads(&[]);
+    crate::common::shapes::add_cuboid(&mut scene, 0, [DVec3::ZERO, DVec3::ONE], true);
+    let corner = |k: u32, height: f64| {
+        let turn = f64::from(k % 20) / 20.0 * std::f64::consts::TAU;
+        dvec3(0.5 + 0.2 * turn.cos(), 0.45 + 0.2 * turn.sin(), height)
+    };
+    for k in 0..20 {
+        let side = [
+            corner(k, 0.4),
+            corner(k + 1, 0.4),
+            corner(k + 1, 0.7),
+            corner(k, 0.7),
+        ];
+        crate::common::shapes::add_quad(&mut scene, 0, side);
+    }
+    for k in 0..9 {
+        let strip = [k, k + 1, 18 - k, 19 - k];
+        crate::common::shapes::add_quad(&mut scene, 0, strip.map(|k| corner(k, 0.7)));
+        let [p, q, r, s] = strip.map(|k| corner(k, 0.4));
+        crate::common::shapes::add_quad(&mut scene, 0, [s, r, q, p]);
+    }
+    let room = matrix(&scene);
+    assert_eq!(room.certificate.pairs.rays, 0);
+    for sum in &room.certificate.row_sums[..6] {
+        close(*sum, 1.0, 5e-4, "a wall");
+    }
+}
+
 /// F between the floor and the ceiling (2 by 2) of a room 1 high past a horizontal plate of 0.9 by 0.9 in its middle, 0.75 over the
 /// floor: all that leaves the floor goes to the walls, four times C-14, to the plate, C-11 by superposition, or to the ceiling.
 /// MOOSE's test `analytical_with_obstruction` of the same room prints 0.282833.
