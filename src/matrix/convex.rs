@@ -94,31 +94,6 @@ impl Convex {
         halves
     }
 
-    /// Leaves in `above` the part where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong to it.
-    pub fn part_above(&self, height: impl Fn(DVec3) -> f64, reach: f64, above: &mut Convex) {
-        above.len = 0;
-        let Some(mut a) = self.corners().last().copied() else {
-            return;
-        };
-        let mut ha = height(a);
-        for b in self.corners() {
-            let hb = height(*b);
-            if (ha > reach && hb < -reach) || (ha < -reach && hb > reach) {
-                above.push(a + (*b - a) * (ha / (ha - hb)));
-            }
-            if hb >= -reach {
-                above.push(*b);
-            }
-            (a, ha) = (*b, hb);
-        }
-    }
-
-    /// Takes the corners of another.
-    pub fn copy(&mut self, other: &Convex) {
-        self.len = other.len;
-        self.corners[..other.len].copy_from_slice(other.corners());
-    }
-
     /// Splits into quads and triangles: fans of quads from the first corner. Nothing from nothing.
     pub fn tiles(&self) -> impl Iterator<Item = Convex> + '_ {
         let first = self.corners[0];
@@ -147,6 +122,43 @@ impl Convex {
             }
         }
     }
+}
+
+/// Leaves in `above` the part of a convex polygon where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong
+/// to it.
+pub(super) fn part_above(
+    polygon: &[DVec3],
+    height: impl Fn(DVec3) -> f64,
+    reach: f64,
+    above: &mut Vec<DVec3>,
+) {
+    above.clear();
+    let Some(mut a) = polygon.last().copied() else {
+        return;
+    };
+    let mut ha = height(a);
+    for b in polygon {
+        let hb = height(*b);
+        if (ha > reach && hb < -reach) || (ha < -reach && hb > reach) {
+            above.push(a + (*b - a) * (ha / (ha - hb)));
+        }
+        if hb >= -reach {
+            above.push(*b);
+        }
+        (a, ha) = (*b, hb);
+    }
+}
+
+/// A convex polygon of any number of corners in parts of no more than eight, which leaves room for what is cut out of them.
+pub(super) fn fan(polygon: &[DVec3]) -> impl Iterator<Item = Convex> + '_ {
+    (1..polygon.len().saturating_sub(1))
+        .step_by(6)
+        .map(|first| {
+            let mut part = Convex::new(&polygon[..1]);
+            let end = (first + 7).min(polygon.len());
+            polygon[first..end].iter().for_each(|c| part.push(*c));
+            part
+        })
 }
 
 #[cfg(test)]

@@ -176,9 +176,7 @@ impl<'a> Looker<'a> {
     /// Looks from few points of both sides, refines the smoother one where that is not enough, and the other where they differ.
     fn integrate(&mut self, views: [View<'_>; 2], tolerance: f64) -> Result<Share, TooIntricate> {
         let [view, back] = views;
-        if self.eyes.is_hidden(view)?
-            && self.eyes.is_hidden(back)?
-            && self.eyes.corners_hidden(view)?
+        if self.eyes.is_hidden(view) && self.eyes.is_hidden(back) && self.eyes.corners_hidden(view)
         {
             return Ok(Share::of((0.0, 0.0), tolerance));
         }

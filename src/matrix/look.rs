@@ -194,7 +194,7 @@ impl<'a> Eyes<'a> {
 
     /// Whether a facet is hidden from all of a few points of the other, which is asked before anything else since it needs
     /// no form factor.
-    pub fn is_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+    pub fn is_hidden(&mut self, view: View<'_>) -> bool {
         self.places.clear();
         for tile in view.outer.shape.tiles() {
             each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
@@ -203,7 +203,7 @@ impl<'a> Eyes<'a> {
     }
 
     /// The same from the corners.
-    pub fn corners_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+    pub fn corners_hidden(&mut self, view: View<'_>) -> bool {
         let shape = &view.outer.shape;
         self.places.clear();
         self.places
@@ -211,14 +211,14 @@ impl<'a> Eyes<'a> {
         self.all_hidden(view)
     }
 
-    fn all_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+    fn all_hidden(&mut self, view: View<'_>) -> bool {
         let sight = view.sight(self.space);
         for (eye, _) in &self.places {
-            if !self.cutter.hides(*eye, sight)? {
-                return Ok(false);
+            if !self.cutter.hides(*eye, sight) {
+                return false;
             }
         }
-        Ok(true)
+        true
     }
 }
 

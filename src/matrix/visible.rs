@@ -1,6 +1,6 @@
 //! What a point sees of a facet past the surfaces between: exactly, by cutting their shadows out of it.
 
-use super::convex::Convex;
+use super::convex::{Convex, fan, part_above};
 use super::facet::Facet;
 use super::occluder::{Between, Occluder};
 use super::silhouette::Plane;
@@ -11,24 +11,14 @@ use std::ops::Range;
 const MOST_FRAGMENTS: usize = 128;
 
 /// Room for fragments and planes, reused from point to point.
+#[derive(Default)]
 pub(super) struct Cutter {
     /// The planes of all shadows, one after the other.
     planes: Vec<Plane>,
     shadows: Vec<Range<usize>>,
     fragments: Vec<Convex>,
     /// What a shadow covers of the facet, plane by plane: before the next, and after.
-    covered: (Convex, Convex),
-}
-
-impl Default for Cutter {
-    fn default() -> Self {
-        Self {
-            planes: Vec::new(),
-            shadows: Vec::new(),
-            fragments: Vec::new(),
-            covered: (Convex::EMPTY, Convex::EMPTY),
-        }
-    }
+    covered: (Vec<DVec3>, Vec<DVec3>),
 }
 
 /// The shape has become too intricate to cut further.
@@ -88,8 +78,8 @@ impl Cutter {
         })
     }
 
-    /// Whether occluders hide all of a facet from `eye`.
-    pub fn hides(&mut self, eye: DVec3, sight: Sight<'_>) -> Result<bool, TooIntricate> {
+    /// Whether occluders hide all of a facet from `eye`, as far as that is easily told.
+    pub fn hides(&mut self, eye: DVec3, sight: Sight<'_>) -> bool {
         self.planes.clear();
         self.fragments.clear();
         self.fragments.push(sight.facet.shape);
@@ -97,14 +87,17 @@ impl Cutter {
             let begin = self.planes.len();
             match self.shadow(eye, sight, between) {
                 Shadow::Misses => continue,
-                Shadow::Covers => return Ok(true),
-                Shadow::Cuts => subtract(&self.planes[begin..], &mut self.fragments)?,
+                Shadow::Covers => return true,
+                Shadow::Cuts => {}
+            }
+            if subtract(&self.planes[begin..], &mut self.fragments).is_err() {
+                return false;
             }
             if self.fragments.is_empty() {
-                return Ok(true);
+                return true;
             }
         }
-        Ok(false)
+        false
     }
 
     /// Appends the planes of a shadow that run through the facet.
@@ -144,13 +137,11 @@ impl Cutter {
         measure: impl Fn(&[DVec3]) -> f64,
     ) -> Result<f64, TooIntricate> {
         let [mut from, mut to] = [&mut self.covered.0, &mut self.covered.1];
-        from.copy(&facet.shape);
+        from.clear();
+        from.extend_from_slice(facet.corners());
         for plane in &self.planes[begin..] {
-            if from.is_full() {
-                return Err(TooIntricate);
-            }
-            from.part_above(|c| plane.height(c), plane.reach, to);
-            if to.is_empty() {
+            part_above(from, |c| plane.height(c), plane.reach, to);
+            if to.len() < 3 {
                 self.planes.truncate(begin);
                 return Ok(0.0);
             }
@@ -159,10 +150,10 @@ impl Cutter {
         let is_first = self.shadows.is_empty();
         self.shadows.push(begin..self.planes.len());
         if is_first {
-            return Ok(measure(from.corners()));
+            return Ok(measure(from));
         }
         self.fragments.clear();
-        self.fragments.push(*from);
+        self.fragments.extend(fan(from));
         for earlier in &self.shadows[..self.shadows.len() - 1] {
             subtract(&self.planes[earlier.clone()], &mut self.fragments)?;
         }
@@ -280,8 +271,7 @@ mod tests {
             Seen::AllBut(hidden) => all - hidden,
             Seen::Nothing => 0.0,
         };
-        let is_hidden = cutter.hides(DVec3::ZERO, sight).expect("is simple");
-        assert_eq!(is_hidden, left < 1e-12);
+        assert_eq!(cutter.hides(DVec3::ZERO, sight), left < 1e-12);
         left
     }
 
