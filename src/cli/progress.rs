@@ -39,7 +39,9 @@ pub(super) fn leave_nothing_on_interrupt() {
         std::process::exit(130);
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        say::warning(&format!("ctrl-C may leave a temporary file behind: {error}"));
+        say::warning(&format!(
+            "ctrl-C may leave a temporary file behind: {error}"
+        ));
     }
 }
 
