@@ -56,7 +56,7 @@ impl CliError {
             | CliError::Solution(_)
             | CliError::Input(_)
             | CliError::Enforce(_)
-            | CliError::Matrix(MatrixError::NothingRadiates)
+            | CliError::Matrix(MatrixError::NothingRadiates | MatrixError::TooLarge { .. })
             | CliError::Solve(SolveError::NotKept | SolveError::OtherScene(_)) => Code::BadInput,
             _ => Code::Failure,
         }

@@ -16,7 +16,7 @@ Exit codes:
   1    failure while running or writing
   2    wrong usage
   3    unusable input
-  130  interrupted (the solution so far is written)
+  130  interrupted (solve writes the solution so far, form-factors nothing)
 
 Warnings, errors and progress go to standard error, results to standard output. Colours are for terminals only, and not if
 NO_COLOR is set.";

@@ -3,16 +3,19 @@
 use super::CliError;
 use super::error::Code;
 use super::heat::{self, write_radiosity};
+use super::progress::leave_nothing_on_interrupt;
 use super::say;
 use super::values::{named, not_negative, positive};
-use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options};
+use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
-    Dropped, MatrixTable, Sink, write_atomically, write_matrix_csv, write_matrix_market, write_npz,
+    Dropped, MatrixTable, Sink, check_writable, remove_abandoned, write_atomically,
+    write_matrix_csv, write_matrix_market, write_npz,
 };
 use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -21,10 +24,10 @@ use std::time::Instant;
 pub(super) struct Arguments {
     /// A folder with a scene.toml, a .toml, or an .obj, .glb, .gltf or .ply; materials are not needed
     scene: PathBuf,
-    /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it
+    /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it, into FILE.certificate.json (without FILE's own ending)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// What a row stands for: a surface, a group (g or o) or a material
+    /// What a row stands for: surface (a polygon, or a part of it), group (below one g or o) or material
     #[arg(long, default_value = "surface", value_parser = named::<By>)]
     by: By,
     /// Divide surfaces until no part is larger (m²)
@@ -36,7 +39,7 @@ pub(super) struct Arguments {
     /// Change the matrix so that this holds exactly, by least squares; says by how much
     #[arg(long, value_name = "LAW")]
     enforce: Option<Law>,
-    /// Solve for radiosity and net flux with the materials' reflectance and emission: FILE.radiosity.csv
+    /// Solve for radiosity and net flux with the materials' reflectance and emission, into FILE.radiosity.csv
     #[arg(long)]
     solve: bool,
     /// The same for heat: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
@@ -52,6 +55,9 @@ pub(super) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N")]
     threads: usize,
 }
+
+/// Rows named in a warning.
+const NAMED: usize = 5;
 
 /// What can be enforced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -73,7 +79,7 @@ enum Format {
 #[derive(Serialize)]
 struct Report<'a> {
     scene: &'a str,
-    options: [(&'static str, String); 4],
+    options: BTreeMap<&'static str, String>,
     closed: bool,
     certificate: &'a Certificate,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -82,12 +88,17 @@ struct Report<'a> {
     dropped: Option<Dropped>,
     labels: Vec<&'a str>,
     areas_m2: Vec<f64>,
+    covered_m2: Vec<f64>,
     warnings: &'a [String],
     seconds: f64,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
+    leave_nothing_on_interrupt();
+    check_writable(&arguments.output)?;
+    let folder = arguments.output.parent().filter(|it| *it != Path::new(""));
+    remove_abandoned(folder.unwrap_or(Path::new(".")));
     let named = NamedScene::load(&arguments.scene)?;
     let heat = arguments
         .temperatures
@@ -114,7 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     };
     let (certificate, dropped, correction) =
         if arguments.enforce.is_some() || arguments.solve || heat.is_some() {
-            // What needs the whole matrix has it in memory, 8 n² bytes.
+            check_memory(enclosure.rows().len())?;
             let mut matrix = enclosure.matrix();
             let correction = match arguments.enforce {
                 Some(Law::Closure) => Some(matrix.enforce_closure()?),
@@ -137,16 +148,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
             let (certificate, dropped) = write(format, arguments, &table, feed)?;
             (certificate, dropped, None)
         };
+    let mut warnings = enclosure.warnings().to_vec();
+    warnings.extend(blindness(&certificate, table.rows));
+    for warning in &warnings[enclosure.warnings().len()..] {
+        say::warning(warning);
+    }
     let report = Report {
         scene: table.scene,
-        options: described(arguments),
+        options: described(arguments).into(),
         closed: certificate.is_closed(),
         certificate: &certificate,
         correction,
         dropped,
         labels: table.rows.iter().map(|row| row.label.as_str()).collect(),
         areas_m2: table.rows.iter().map(|row| row.area).collect(),
-        warnings: enclosure.warnings(),
+        covered_m2: table.rows.iter().map(|row| row.covered).collect(),
+        warnings: &warnings,
         seconds: started.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_vec_pretty(&report).map_err(|e| CliError::System(e.to_string()))?;
@@ -155,6 +172,40 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     })?;
     print!("{}", summary(&report));
     Ok(Code::Success)
+}
+
+/// Refuses a matrix for which there is no memory, 8 n² bytes, before it has been worked out.
+fn check_memory(rows: usize) -> Result<(), CliError> {
+    let room = Vec::<f64>::new().try_reserve_exact(rows.saturating_mul(rows));
+    room.map_err(|_| {
+        CliError::System(format!(
+            "no memory for all {rows} x {rows} entries at once ({:.1} GiB), which --enforce, --solve and --temperatures need",
+            8.0 * (rows as f64).powi(2) / f64::from(1 << 30)
+        ))
+    })
+}
+
+/// Rows that see nothing, though nothing covers them, are most often turned the wrong way.
+fn blindness(certificate: &Certificate, rows: &[Row]) -> Option<String> {
+    let blind: Vec<&str> = certificate
+        .blind_rows()
+        .map(|row| rows[row].label.as_str())
+        .collect();
+    let what = match blind.len() {
+        0 => return None,
+        count if count == rows.len() => "no row sees any other".to_owned(),
+        count => {
+            let named = blind[..count.min(NAMED)].join("`, `");
+            let others = if count > NAMED { ", …" } else { "" };
+            format!(
+                "{count} of {} rows see no other (`{named}`{others})",
+                rows.len()
+            )
+        }
+    };
+    Some(format!(
+        "{what}: surfaces radiate from the side from which their corners run counter-clockwise; if that is the wrong one, turn them or say sides = \"both\" in the scene.toml"
+    ))
 }
 
 fn format_of(path: &Path) -> Result<Format, CliError> {
@@ -261,6 +312,14 @@ fn summary(report: &Report<'_>) -> String {
         pairs.sampled,
         pairs.rays,
     );
+    let covered = report.covered_m2.iter().filter(|area| **area > 0.0);
+    if covered.clone().count() > 0 {
+        text += &format!(
+            "covered: {:.4} m^2 in {} of the rows, on which something stands or which lies in a solid: that area does not count\n",
+            covered.clone().sum::<f64>(),
+            covered.count(),
+        );
+    }
     if let Some(correction) = &report.correction {
         text += &format!(
             "enforced: entries changed by {:.1e} at most, {:.1e} rms; row sums within {:.1e} of 1\n",

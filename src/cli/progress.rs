@@ -2,7 +2,7 @@
 
 use super::say;
 use super::say::is_quiet;
-use crate::output::Moment;
+use crate::output::{Moment, abandon_drafts};
 use crate::solver::{Control, Observer, Phase, Progress};
 use clap::ValueEnum;
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
@@ -28,6 +28,20 @@ pub(super) fn catch_interrupts() {
     };
     if let Err(error) = ctrlc::set_handler(handler) {
         say::warning(&format!("ctrl-C will lose the solution: {error}"));
+    }
+}
+
+/// Lets ctrl-C end a run that has nothing to show before its end: half-written files go.
+pub(super) fn leave_nothing_on_interrupt() {
+    let handler = || {
+        abandon_drafts();
+        eprintln!("\ninterrupted: the file that was being written is not left behind");
+        std::process::exit(130);
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        say::warning(&format!(
+            "ctrl-C may leave a temporary file behind: {error}"
+        ));
     }
 }
 

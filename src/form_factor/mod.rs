@@ -16,6 +16,6 @@ mod source;
 pub use disk::point_to_disk;
 pub use hybrid::{Formula, Receiver};
 pub use partition::{SourceThresholds, ToleranceScale};
-pub use polygon::{point_to_polygon, point_to_visible_polygon};
+pub use polygon::{point_to_polygon, point_to_polygon_from, point_to_visible_polygon};
 pub use sampling::{Gather, Sampler, Scratch};
 pub use source::{Cell, DEEPEST, Source, SourceShape};

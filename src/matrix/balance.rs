@@ -62,7 +62,8 @@ impl Matrix {
     fn solve_channel(&self, rho: &[f64], emitted: &[f64]) -> Vec<f64> {
         let n = self.len();
         let area = |i: usize| self.rows[i].area;
-        let reflects: Vec<bool> = rho.iter().map(|rho| *rho > BLACK).collect();
+        // A row that is covered altogether exchanges nothing.
+        let reflects: Vec<bool> = (0..n).map(|i| rho[i] > BLACK && area(i) > 0.0).collect();
         let right: Vec<f64> = (0..n)
             .map(|i| {
                 if !reflects[i] {

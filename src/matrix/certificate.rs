@@ -2,6 +2,7 @@
 
 use super::enclosure::Enclosure;
 use super::pair::Kind;
+use super::rows::Row;
 use serde::Serialize;
 use std::ops::AddAssign;
 
@@ -66,7 +67,7 @@ impl AddAssign for Tally {
 /// Row sums, errors and limits of a matrix.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// Σ_j F_ij of each row: 1 in a closed scene, else less by the share that escapes.
+    /// Σ_j F_ij of each row: 1 in a closed scene, else less by the share that escapes; 0 where all of it is covered.
     pub row_sums: Vec<f64>,
     /// Estimated error of each row: the root of the sum of the squares of its entries' errors.
     pub row_errors: Vec<f64>,
@@ -76,6 +77,9 @@ pub struct Certificate {
     pub reciprocity_residual: f64,
     /// Share of the flux of all rows, in proportion to their area, that escapes.
     pub escaped: f64,
+    /// For each row the share of its surfaces that nothing can reach, since something stands on it or it lies within a solid: it counts
+    /// neither as area nor as open.
+    pub covered: Vec<f64>,
     /// How the pairs were worked out.
     pub pairs: Tally,
     #[serde(skip)]
@@ -92,8 +96,12 @@ impl Certificate {
             limited: Vec::new(),
             reciprocity_residual: 0.0,
             escaped: 0.0,
+            covered: enclosure.rows().iter().map(Row::covered_share).collect(),
             pairs: Tally::default(),
-            weights: areas.iter().map(|area| area / total).collect(),
+            weights: areas
+                .iter()
+                .map(|area| area / total.max(f64::MIN_POSITIVE))
+                .collect(),
         }
     }
 
@@ -105,19 +113,32 @@ impl Certificate {
         self.escaped += self.weights[row] * (1.0 - sum);
     }
 
-    /// Whether every row sums up to 1, as far as the errors tell.
-    pub fn is_closed(&self) -> bool {
-        let rows = self.row_sums.iter().zip(&self.row_errors);
-        rows.into_iter()
-            .all(|(sum, error)| (sum - 1.0).abs() <= CLOSED + 3.0 * error)
+    /// Rows with some area that is not covered, by number, sum and error.
+    fn exposed(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let rows = self.row_sums.iter().zip(&self.row_errors).enumerate();
+        rows.filter(|(row, _)| self.covered[*row] < 1.0)
+            .map(|(row, (sum, error))| (row, *sum, *error))
     }
 
-    /// Least and largest row sum.
+    /// Whether every row sums up to 1, as far as the errors tell; rows that are covered altogether are left out.
+    pub fn is_closed(&self) -> bool {
+        self.exposed()
+            .all(|(_, sum, error)| (sum - 1.0).abs() <= CLOSED + 3.0 * error)
+    }
+
+    /// Least and largest row sum of those that are not covered altogether.
     pub fn sum_range(&self) -> (f64, f64) {
-        let range = |(low, high): (f64, f64), sum: &f64| (low.min(*sum), high.max(*sum));
-        self.row_sums
-            .iter()
+        let range =
+            |(low, high): (f64, f64), (_, sum, _): (usize, f64, f64)| (sum.min(low), sum.max(high));
+        self.exposed()
             .fold((f64::INFINITY, f64::NEG_INFINITY), range)
+    }
+
+    /// Rows that see no other, though nothing covers them: they face outwards, as a rule.
+    pub fn blind_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        self.exposed()
+            .filter(|(_, sum, _)| *sum == 0.0)
+            .map(|(row, ..)| row)
     }
 
     /// Largest error of a row.

@@ -124,6 +124,43 @@ impl Convex {
     }
 }
 
+/// Leaves in `above` the part of a convex polygon where `height`, a linear function, is positive; corners nearer to 0 than `reach` belong
+/// to it.
+pub(super) fn part_above(
+    polygon: &[DVec3],
+    height: impl Fn(DVec3) -> f64,
+    reach: f64,
+    above: &mut Vec<DVec3>,
+) {
+    above.clear();
+    let Some(mut a) = polygon.last().copied() else {
+        return;
+    };
+    let mut ha = height(a);
+    for b in polygon {
+        let hb = height(*b);
+        if (ha > reach && hb < -reach) || (ha < -reach && hb > reach) {
+            above.push(a + (*b - a) * (ha / (ha - hb)));
+        }
+        if hb >= -reach {
+            above.push(*b);
+        }
+        (a, ha) = (*b, hb);
+    }
+}
+
+/// A convex polygon of any number of corners in parts of no more than eight, which leaves room for what is cut out of them.
+pub(super) fn fan(polygon: &[DVec3]) -> impl Iterator<Item = Convex> + '_ {
+    (1..polygon.len().saturating_sub(1))
+        .step_by(6)
+        .map(|first| {
+            let mut part = Convex::new(&polygon[..1]);
+            let end = (first + 7).min(polygon.len());
+            polygon[first..end].iter().for_each(|c| part.push(*c));
+            part
+        })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,11 +1,40 @@
 //! Surfaces divided to a largest area.
 
+use super::MatrixError;
 use crate::geometry::polygon;
 use crate::scene::{Corners, Scene, Surface};
 use glam::DVec3;
 
 /// Parts that one surface may be divided into.
 const MOST_PARTS: f64 = 1e6;
+
+/// Most pieces of surfaces, of which all pairs are worked out.
+const MOST_PIECES: u64 = 200_000;
+
+/// Refuses what would take days: too many surfaces, or parts of no more than `max_area` (m²).
+pub(super) fn check_count(scene: &Scene, max_area: Option<f64>) -> Result<(), MatrixError> {
+    let unit = scene.metres_per_unit.powi(2);
+    let (limit, hint) = match max_area {
+        Some(area) => (area / unit, ": ask for a larger max-area"),
+        None => (f64::INFINITY, ""),
+    };
+    let parts = |surface: &Surface| (area(scene, surface) / limit).clamp(1.0, MOST_PARTS) as u64;
+    let pieces = scene.surfaces.iter().map(parts).sum();
+    match pieces <= MOST_PIECES {
+        true => Ok(()),
+        false => Err(MatrixError::TooLarge {
+            pieces,
+            most: MOST_PIECES,
+            hint,
+        }),
+    }
+}
+
+fn area(scene: &Scene, surface: &Surface) -> f64 {
+    let corners = surface.corners.indices().iter();
+    let corners: Vec<DVec3> = corners.map(|v| scene.vertices[*v as usize]).collect();
+    polygon::vector_area(&corners).length()
+}
 
 /// Divides quads into grids and triangles into similar triangles, row by row from the first corner, until no part is larger than
 /// `max_area` (scene units squared).

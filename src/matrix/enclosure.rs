@@ -1,10 +1,12 @@
 //! A scene made ready, and its matrix row by row.
 
 use super::certificate::{Certificate, Tally};
+use super::covered::Covers;
+use super::divide::check_count;
+use super::facet::Facet;
 use super::pair::{Exchange, Kind, Worker};
 use super::rows::{Row, Rows};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
-use super::unhindered::Ranges;
 use super::{MatrixError, Options};
 use crate::scene::NamedScene;
 use crate::threads::pool;
@@ -13,9 +15,9 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Up to this many rows the exchanges of all pairs are kept (1 GiB) and each is worked out once; beyond it twice, so that memory
+/// Up to this many rows the exchanges of all pairs are kept (1.5 GiB) and each is worked out once; beyond it twice, so that memory
 /// grows with the number of rows and not with its square.
-const MOST_KEPT: usize = 16_000;
+const MOST_KEPT: usize = 20_000;
 
 /// Rows worked out together beyond that, for each thread.
 const BLOCK: usize = 16;
@@ -68,11 +70,12 @@ impl Enclosure {
     /// Makes a scene ready.
     ///
     /// # Errors
-    /// When no surface radiates, an option cannot be met, or the visibility engine cannot be built.
+    /// When no surface radiates, there are more than 200,000 of them, an option cannot be met, or the visibility engine cannot be built.
     pub fn new(named: &NamedScene, options: &Options) -> Result<Self, MatrixError> {
         options.check()?;
         let pool = pool(options.threads)?;
         let scene = &named.scene;
+        check_count(scene, options.max_area)?;
         let frame = scene.frame();
         let positions = scene.positions_in(&frame);
         let visibility = build(
@@ -80,20 +83,28 @@ impl Enclosure {
             &triangles(scene, &positions),
             pool.current_num_threads(),
         )?;
-        let mut rows = pool.install(|| Rows::new(named, &frame, options));
+        let extent = frame.extent();
+        let occluders = occluders(scene, &positions, extent);
+        let covers = Covers {
+            scene,
+            positions: &positions,
+            occluders: &occluders,
+            visibility: visibility.as_ref(),
+            extent,
+        };
+        let cover = |facets: &[Facet]| covers.covered(facets);
+        let mut rows = pool.install(|| Rows::new(named, &frame, options, cover));
         if rows.list.is_empty() {
             return Err(MatrixError::NothingRadiates);
         }
         let mut warnings = scene.warnings.clone();
-        warnings.extend(super::overlap::overlaps(named, &positions, frame.extent()));
+        warnings.extend(super::overlap::overlaps(named, &positions, extent));
         if rows.unsplit > 0 {
             warnings.push(format!(
                 "{} surfaces not split where others meet them: entries there converge slowly",
                 rows.unsplit
             ));
         }
-        let extent = frame.extent();
-        let occluders = occluders(scene, &positions, extent);
         let facets = std::mem::take(&mut rows.facets);
         let lengths = pool.install(|| row_lengths(&facets, &rows.of_row));
         let count = rows.list.len();
@@ -103,8 +114,7 @@ impl Enclosure {
             std::iter::repeat_n(budget, facets.len())
         });
         let budgets = budgets.collect();
-        let ranges = Ranges::new(options.tolerance);
-        let space = Space::new(facets, occluders, extent, budgets, ranges, visibility);
+        let space = Space::new(facets, occluders, extent, budgets, visibility);
         let keep = rows.list.len() <= MOST_KEPT;
         Ok(Self {
             rows,
@@ -130,7 +140,7 @@ impl Enclosure {
         self.space.visibility.info()
     }
 
-    /// Has every pair worked out when either of its rows comes up rather than once, as beyond 16,000 rows; for tests.
+    /// Has every pair worked out when either of its rows comes up rather than once, as beyond 20,000 rows; for tests.
     #[doc(hidden)]
     pub fn without_keeping(mut self) -> Self {
         self.keep = false;
@@ -242,9 +252,12 @@ impl Enclosure {
             .iter_mut()
             .for_each(|value| *value /= area.max(f64::MIN_POSITIVE));
         let sum = values.iter().sum();
-        let quadrature: f64 =
-            values.iter().map(|v| v * v).sum::<f64>() * self.space.ranges.accuracy.powi(2);
-        let error = (squares / (area * area) + quadrature).sqrt();
+        let accuracy = self.accuracy(row);
+        let quadrature: f64 = values.iter().map(|v| v * v).sum::<f64>() * accuracy.powi(2);
+        let error = match area > 0.0 {
+            true => (squares / (area * area) + quadrature).sqrt(),
+            false => 0.0,
+        };
         certificate.add(row, sum, error, limited);
         sink(&FormFactors {
             index: row,
@@ -260,6 +273,8 @@ impl Enclosure {
         let start = || Worker::new(&self.space);
         self.pool.install(|| {
             rows.into_par_iter()
+                // Rows are worth a millisecond and more, the first far more than the last.
+                .with_max_len(1)
                 .map_init(start, |worker, row| self.work_row(worker, row, pairs))
                 .collect()
         })
@@ -297,6 +312,12 @@ impl Enclosure {
         work.limited.dedup();
         work.tally.rays = worker.rays - rays_before;
         work
+    }
+
+    /// The relative error that unhindered entries of a row may have.
+    fn accuracy(&self, row: usize) -> f64 {
+        let first = self.rows.of_row[row].clone().next();
+        first.map_or(0.0, |facet| self.space.budgets[facet as usize].accuracy)
     }
 
     /// The row that a facet belongs to.

@@ -46,8 +46,12 @@ impl Matrix {
     pub fn enforce_closure(&mut self) -> Result<Correction, EnforceError> {
         let n = self.len();
         let sums: Vec<f64> = (0..n).map(|i| self.row(i).iter().sum()).collect();
+        // Rows without exposed area have no balance.
+        let is_exposed = |i: &usize| self.rows[*i].area > 0.0;
         let off = |i: &usize| (sums[*i] - 1.0).abs();
-        if let Some(worst) = (0..n).max_by(|a, b| off(a).total_cmp(&off(b)))
+        if let Some(worst) = (0..n)
+            .filter(is_exposed)
+            .max_by(|a, b| off(a).total_cmp(&off(b)))
             && off(&worst) > CLOSED
         {
             return Err(EnforceError::Open {
@@ -74,7 +78,9 @@ impl Matrix {
                 largest = largest.max(change.abs());
                 squares += change * change;
             }
-            residual = residual.max((row.iter().sum::<f64>() - 1.0).abs());
+            if areas[i] > 0.0 {
+                residual = residual.max((row.iter().sum::<f64>() - 1.0).abs());
+            }
         }
         Ok(Correction {
             largest,
@@ -93,7 +99,8 @@ impl Matrix {
                 let (area_i, area_j) = (self.rows[i].area, self.rows[j].area);
                 let mean =
                     0.5 * (area_i * self.values[i * n + j] + area_j * self.values[j * n + i]);
-                for (at, value) in [(i * n + j, mean / area_i), (j * n + i, mean / area_j)] {
+                for (at, area) in [(i * n + j, area_i), (j * n + i, area_j)] {
+                    let value = if area > 0.0 { mean / area } else { 0.0 };
                     let change = (value - self.values[at]).abs();
                     self.values[at] = value;
                     largest = largest.max(change);
@@ -102,7 +109,8 @@ impl Matrix {
             }
         }
         let sum = |i: usize| self.row(i).iter().sum::<f64>();
-        let residual = (0..n).map(|i| (sum(i) - 1.0).abs()).fold(0.0, f64::max);
+        let exposed = (0..n).filter(|i| self.rows[*i].area > 0.0);
+        let residual = exposed.map(|i| (sum(i) - 1.0).abs()).fold(0.0, f64::max);
         Correction {
             largest,
             rms: (squares / ((n * n) as f64).max(1.0)).sqrt(),

@@ -17,6 +17,18 @@ pub enum MatrixError {
     /// There is no surface.
     #[error("no surface radiates: there is nothing to compute form factors of")]
     NothingRadiates,
+    /// More pieces than pairs can be worked out of.
+    #[error(
+        "the scene has {pieces} pieces of surfaces; expected at most {most}, since every pair of them is worked out{hint}"
+    )]
+    TooLarge {
+        /// How many there would be.
+        pieces: u64,
+        /// How many there may be.
+        most: u64,
+        /// What may help.
+        hint: &'static str,
+    },
     /// An option that cannot be met.
     #[error("{name} is {found}; expected {expected}")]
     Option {

@@ -17,6 +17,8 @@ pub(super) struct Facet {
     /// Box around the corners.
     pub low: DVec3,
     pub high: DVec3,
+    /// The first four corners component by component, so that they are done at once; a triangle repeats one.
+    columns: [[f64; 4]; 3],
 }
 
 impl Facet {
@@ -39,7 +41,9 @@ impl Facet {
             .fold(0.0, f64::max)
             .sqrt();
         let (low, high) = polygon::bounds(corners);
+        let quad = shape.quad();
         Some(Self {
+            columns: std::array::from_fn(|axis| quad.map(|corner| corner[axis])),
             shape,
             normal,
             centroid,
@@ -52,6 +56,25 @@ impl Facet {
 
     pub fn corners(&self) -> &[DVec3] {
         self.shape.corners()
+    }
+
+    /// Least and greatest height of the corners over the plane where `normal` · x = `offset`, in units of the normal's length.
+    pub fn range_over(&self, normal: DVec3, offset: f64) -> (f64, f64) {
+        let [x, y, z] = &self.columns;
+        let h: [f64; 4] =
+            std::array::from_fn(|k| normal.x * x[k] + normal.y * y[k] + normal.z * z[k] - offset);
+        let least = |a: f64, b: f64| if a < b { a } else { b };
+        let most = |a: f64, b: f64| if a > b { a } else { b };
+        let first = (
+            least(least(h[0], h[1]), least(h[2], h[3])),
+            most(most(h[0], h[1]), most(h[2], h[3])),
+        );
+        let others = self
+            .corners()
+            .iter()
+            .skip(4)
+            .map(|c| normal.dot(*c) - offset);
+        others.fold(first, |(low, high), h| (least(h, low), most(h, high)))
     }
 
     /// Height of a point over the plane, on the radiating side.

@@ -14,11 +14,16 @@ use super::look::{Eyes, Sums, View};
 use super::occluder::Between;
 use super::pair::Kind;
 use super::rays::Sampler;
+use super::silhouette::Planes;
 use super::space::Space;
+use super::unhindered::is_afar;
 use super::visible::TooIntricate;
 
 /// With more surfaces than this between, rays are traced instead.
 const MOST_CUT: usize = 64;
+
+/// Of the tolerance of a share, how accurately its parts are measured.
+const MEASURED: f64 = 0.1;
 
 /// How often a tile may be quartered.
 const DEEPEST: u32 = 5;
@@ -105,7 +110,36 @@ impl<'a> Looker<'a> {
         {
             return share;
         }
+        // The outline of a round body has more corners than there is room for; each of its faces has few.
+        let faces = self.faces(facets, between);
+        if (between.len() + 1..=MOST_CUT).contains(&faces.len())
+            && let Ok(share) = self.cut(facets, &faces, whole, tolerance)
+        {
+            return share;
+        }
         self.sampler.share(facets, tolerance, key)
+    }
+
+    /// What lies between, with its faces in place of each body.
+    fn faces(&self, facets: [&Facet; 2], between: &[Between]) -> Vec<Between> {
+        let occluders = &self.space.occluders;
+        let mut faces = Vec::new();
+        for it in between {
+            let body = &occluders[it.occluder as usize];
+            if !body.is_body() {
+                faces.push(*it);
+            }
+            faces.extend(body.members.clone().filter_map(|member| {
+                let sides = facets.map(|facet| occluders[member as usize].sides(facet));
+                let is_between = !sides[0].share_a_front(sides[1]);
+                is_between.then_some(Between {
+                    occluder: member,
+                    planes: Planes::ALL,
+                    sides,
+                })
+            }));
+        }
+        faces
     }
 
     fn cut(
@@ -121,15 +155,18 @@ impl<'a> Looker<'a> {
             order.clear();
             order.extend_from_slice(between);
             let occluders = &self.space.occluders;
-            order.sort_by_key(|it| occluders[it.occluder as usize].height(eye.centroid) <= 0.0);
+            order.sort_by_key(|it| {
+                occluders[it.occluder as usize].is_seen_from_behind(eye.centroid)
+            });
         }
         let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
         let view = |outer, inner, k: usize| View {
             outer,
             inner,
             between: &orders[k],
+            there: 1 - k,
             whole,
-            is_far: self.space.ranges.is_afar(gap, inner),
+            is_far: is_afar(gap, inner, MEASURED * tolerance),
         };
         let share = self.integrate([view(a, b, 0), view(b, a, 1)], tolerance);
         self.orders = orders;
@@ -139,37 +176,33 @@ impl<'a> Looker<'a> {
     /// Looks from few points of both sides, refines the smoother one where that is not enough, and the other where they differ.
     fn integrate(&mut self, views: [View<'_>; 2], tolerance: f64) -> Result<Share, TooIntricate> {
         let [view, back] = views;
-        if self.eyes.is_hidden(view)?
-            && self.eyes.is_hidden(back)?
-            && self.eyes.corners_hidden(view)?
+        if self.eyes.is_hidden(view) && self.eyes.is_hidden(back) && self.eyes.corners_hidden(view)
         {
             return Ok(Share::of((0.0, 0.0), tolerance));
         }
-        let coarse = [self.eyes.look_all(view, 2)?, self.eyes.look_all(back, 2)?];
+        let coarse = [self.eyes.look_all(view)?, self.eyes.look_all(back)?];
         if coarse.iter().all(Sums::sees_all) {
             let error = BETWEEN_POINTS * self.eyes.corners_differ(view, &view.outer.shape, 1.0)?;
             if error <= tolerance {
                 return Ok(Share::of((1.0, error), tolerance));
             }
         }
-        let (smooth, rough, coarse) = if coarse[0].variance() <= coarse[1].variance() {
-            (view, back, coarse)
-        } else {
-            (back, view, [coarse[1], coarse[0]])
-        };
-        let guess = self.guess(smooth, coarse[0])?;
-        if guess.1.max((guess.0 - coarse[1].share()).abs()) <= tolerance {
+        let (mut smooth, mut rough) = ((view, coarse[0]), (back, coarse[1]));
+        if smooth.1.variance() > rough.1.variance() {
+            std::mem::swap(&mut smooth, &mut rough);
+        }
+        let mut guess = self.guess(smooth)?;
+        if guess.1.max((guess.0 - rough.1.share()).abs()) <= tolerance {
             return Ok(Share::of(guess, tolerance));
         }
-        let other = self.guess(rough, coarse[1])?;
-        let (smooth, rough, guess, other, coarse) = if guess.1 <= other.1 {
-            (smooth, rough, guess, other, coarse[1])
-        } else {
-            (rough, smooth, other, guess, coarse[0])
-        };
+        let mut other = self.guess(rough)?;
+        if other.1 < guess.1 {
+            std::mem::swap(&mut smooth, &mut rough);
+            std::mem::swap(&mut guess, &mut other);
+        }
         let limit = other.1.clamp(tolerance, AGREES * tolerance);
         let agrees = |found: (f64, f64)| (found.0 - other.0).abs() <= limit;
-        let differs = OTHER * (guess.0 - coarse.share()).abs();
+        let differs = OTHER * (guess.0 - rough.1.share()).abs();
         if guess.1.max(differs) <= tolerance && agrees(guess) {
             return Ok(Share::of(guess, tolerance));
         }
@@ -177,7 +210,7 @@ impl<'a> Looker<'a> {
         if agrees(found) {
             return Ok(Share::of(found, tolerance));
         }
-        let other = self.refine_all(rough, tolerance)?;
+        let other = self.refine_all(rough, AGREES * tolerance)?;
         if (found.0 - other.0).abs() <= found.1 + other.1 + tolerance {
             return Ok(Share::of(found, tolerance));
         }
@@ -190,8 +223,8 @@ impl<'a> Looker<'a> {
     }
 
     /// The share that one side sees from nine points a tile, and its error.
-    fn guess(&mut self, view: View<'_>, coarse: Sums) -> Result<(f64, f64), TooIntricate> {
-        let fine = self.eyes.look_all(view, 3)?;
+    fn guess(&mut self, (view, coarse): (View<'_>, Sums)) -> Result<(f64, f64), TooIntricate> {
+        let fine = self.eyes.look_closer(view, coarse)?;
         let share = fine.share();
         let error = (share - coarse.share())
             .abs()
@@ -200,17 +233,21 @@ impl<'a> Looker<'a> {
         Ok((share, error.max(missed)))
     }
 
-    /// The share that one side sees, refined to `tolerance`, with its error.
-    fn refine_all(&mut self, view: View<'_>, tolerance: f64) -> Result<(f64, f64), TooIntricate> {
-        let tiles: Vec<(Convex, Sums)> = view
-            .outer
-            .shape
-            .tiles()
-            .map(|tile| Ok((tile, self.eyes.look(view, &tile, 2)?)))
-            .collect::<Result<_, _>>()?;
+    /// The share that one side sees, refined to `tolerance`, with its error; `coarse` is what it sees from four points a tile.
+    fn refine_all(
+        &mut self,
+        (view, coarse): (View<'_>, Sums),
+        tolerance: f64,
+    ) -> Result<(f64, f64), TooIntricate> {
         let mut refined = Refined::default();
-        for (tile, sums) in &tiles {
-            refined.add(self.refine(view, tile, *sums, tolerance * view.whole, 0)?);
+        let is_one = view.outer.shape.tiles().count() == 1;
+        for tile in view.outer.shape.tiles() {
+            let here = if is_one {
+                coarse
+            } else {
+                self.eyes.look(view, &tile)?
+            };
+            refined.add(self.refine(view, &tile, here, tolerance * view.whole, 0)?);
         }
         Ok(refined.share_of(view.whole))
     }
@@ -227,7 +264,7 @@ impl<'a> Looker<'a> {
         let quarters = tile.quarters();
         let mut parts = [Sums::default(); 4];
         for (part, quarter) in parts.iter_mut().zip(&quarters) {
-            *part = self.eyes.look(view, quarter, 2)?;
+            *part = self.eyes.look(view, quarter)?;
         }
         let fine: Sums = parts.iter().copied().sum();
         let mut error = GAIN * (fine.visible - coarse.share() * fine.all).abs();

@@ -2,15 +2,18 @@
 
 use super::convex::Convex;
 use super::facet::Facet;
-use super::gauss::each_node;
-use super::occluder::{Between, Occluder, Planes};
+use super::gauss::{each_more, each_node};
+use super::occluder::Between;
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
-use super::visible::{Cutter, TooIntricate};
+use super::visible::{Cutter, Seen, Sight, TooIntricate};
 use glam::DVec3;
 
 /// Corners are looked from a little inside, since on a common edge a form factor has no value.
 const INWARDS: f64 = 1e-3;
+
+/// Of what is seen, less than this is what rounding left.
+const ROUNDING: f64 = 1e-12;
 
 /// Integrals over a tile of one facet of what its points see of the other.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,6 +38,14 @@ impl Sums {
         self.visible == self.all
     }
 
+    fn times(self, factor: f64) -> Self {
+        Self {
+            visible: self.visible * factor,
+            all: self.all * factor,
+            squares: self.squares * factor,
+        }
+    }
+
     /// Whether all points see the same: everything, or nothing.
     pub fn is_plain(&self) -> bool {
         self.sees_all() || self.visible == 0.0
@@ -49,13 +60,21 @@ impl Sums {
     }
 }
 
+impl std::ops::Add for Sums {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            visible: self.visible + other.visible,
+            all: self.all + other.all,
+            squares: self.squares + other.squares,
+        }
+    }
+}
+
 impl std::iter::Sum for Sums {
     fn sum<I: Iterator<Item = Self>>(iter: I) -> Self {
-        iter.fold(Self::default(), |a, b| Self {
-            visible: a.visible + b.visible,
-            all: a.all + b.all,
-            squares: a.squares + b.squares,
-        })
+        iter.fold(Self::default(), |a, b| a + b)
     }
 }
 
@@ -65,6 +84,8 @@ pub(super) struct View<'a> {
     pub outer: &'a Facet,
     pub inner: &'a Facet,
     pub between: &'a [Between],
+    /// Which of the two facets of the pair is looked at.
+    pub there: usize,
     /// Whether midpoints are enough for what is seen of the other ([`seen_afar`]).
     pub is_far: bool,
     /// What they exchange with nothing between.
@@ -72,10 +93,14 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// What lies between, with the planes of its shadows that matter.
-    fn occluders(&self, space: &'a Space) -> impl Iterator<Item = (&'a Occluder, Planes)> + 'a {
-        let between = self.between.iter();
-        between.map(|it| (&space.occluders[it.occluder as usize], it.planes))
+    fn sight(&self, space: &'a Space) -> Sight<'a> {
+        Sight {
+            facet: self.inner,
+            occluders: &space.occluders,
+            between: self.between,
+            there: self.there,
+            extent: space.extent,
+        }
     }
 }
 
@@ -95,33 +120,42 @@ impl<'a> Eyes<'a> {
         }
     }
 
-    /// Looks from the points of a product rule on every tile.
-    pub fn look_all(&mut self, view: View<'_>, points: usize) -> Result<Sums, TooIntricate> {
+    /// Looks from the four points of the product rule on every tile.
+    pub fn look_all(&mut self, view: View<'_>) -> Result<Sums, TooIntricate> {
         let tiles = view.outer.shape.tiles();
-        tiles.map(|tile| self.look(view, &tile, points)).sum()
+        tiles.map(|tile| self.look(view, &tile)).sum()
     }
 
     /// The same on one tile.
-    pub fn look(
+    pub fn look(&mut self, view: View<'_>, tile: &Convex) -> Result<Sums, TooIntricate> {
+        let mut sum = Ok(Sums::default());
+        each_node(tile, 2, |eye, weight| self.add(view, eye, weight, &mut sum));
+        sum
+    }
+
+    /// Looks from five more points on every tile, which make nine with those from which `four` were seen.
+    pub fn look_closer(&mut self, view: View<'_>, four: Sums) -> Result<Sums, TooIntricate> {
+        let mut sum = Ok(four.times(4.0 / 9.0));
+        for tile in view.outer.shape.tiles() {
+            each_more(&tile, |eye, weight| self.add(view, eye, weight, &mut sum));
+        }
+        sum
+    }
+
+    fn add(
         &mut self,
         view: View<'_>,
-        tile: &Convex,
-        points: usize,
-    ) -> Result<Sums, TooIntricate> {
-        let mut places = std::mem::take(&mut self.places);
-        places.clear();
-        each_node(tile, points, |eye, weight| places.push((eye, weight)));
-        let sums = places
-            .iter()
-            .map(|(eye, weight)| self.look_from(view, *eye, *weight))
-            .sum();
-        self.places = places;
-        sums
+        eye: DVec3,
+        weight: f64,
+        sum: &mut Result<Sums, TooIntricate>,
+    ) {
+        if let Ok(before) = sum {
+            *sum = self.look_from(view, eye, weight).map(|here| *before + here);
+        }
     }
 
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
-        let (normal, extent) = (view.outer.normal, self.space.extent);
-        let occluders = view.occluders(self.space);
+        let normal = view.outer.normal;
         let measure = |part: &[DVec3]| {
             if view.is_far {
                 seen_afar(normal, eye, view.inner.normal, part)
@@ -129,11 +163,13 @@ impl<'a> Eyes<'a> {
                 seen(normal, eye, part)
             }
         };
-        let visible = self
-            .cutter
-            .seen(eye, view.inner, occluders, extent, measure)?;
+        let found = self.cutter.seen(eye, view.sight(self.space), measure)?;
         let all = measure(view.inner.corners());
-        let visible = visible.unwrap_or(all);
+        let visible = match found {
+            Seen::All => all,
+            Seen::AllBut(hidden) if all - hidden > ROUNDING * all => all - hidden,
+            Seen::AllBut(_) | Seen::Nothing => 0.0,
+        };
         Ok(Sums {
             visible: weight * visible,
             all: weight * all,
@@ -158,7 +194,7 @@ impl<'a> Eyes<'a> {
 
     /// Whether a facet is hidden from all of a few points of the other, which is asked before anything else since it needs
     /// no form factor.
-    pub fn is_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+    pub fn is_hidden(&mut self, view: View<'_>) -> bool {
         self.places.clear();
         for tile in view.outer.shape.tiles() {
             each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
@@ -167,7 +203,7 @@ impl<'a> Eyes<'a> {
     }
 
     /// The same from the corners.
-    pub fn corners_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
+    pub fn corners_hidden(&mut self, view: View<'_>) -> bool {
         let shape = &view.outer.shape;
         self.places.clear();
         self.places
@@ -175,15 +211,14 @@ impl<'a> Eyes<'a> {
         self.all_hidden(view)
     }
 
-    fn all_hidden(&mut self, view: View<'_>) -> Result<bool, TooIntricate> {
-        let extent = self.space.extent;
+    fn all_hidden(&mut self, view: View<'_>) -> bool {
+        let sight = view.sight(self.space);
         for (eye, _) in &self.places {
-            let occluders = view.occluders(self.space);
-            if !self.cutter.hides(*eye, view.inner, occluders, extent)? {
-                return Ok(false);
+            if !self.cutter.hides(*eye, sight) {
+                return false;
             }
         }
-        Ok(true)
+        true
     }
 }
 

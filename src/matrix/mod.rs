@@ -4,8 +4,9 @@
 //! row sums up to 1 in a closed scene. An [`Enclosure`] is a scene made ready: its [`Row`]s are radiating sides, or groups of them. It
 //! hands out the matrix row by row ([`Enclosure::each_row`]), or whole ([`Enclosure::matrix`]).
 //!
-//! 1. `rows`: sides of surfaces, divided (`divide`), split where others meet them, become flat `facet`s.
-//! 2. `join`: neighbours in one plane become one `occluder`; `tree` finds for a pair of facets those that may come between.
+//! 1. `rows`: sides of surfaces, divided (`divide`), split where others meet them, become flat `facet`s; those that are `covered` do not
+//!    count.
+//! 2. `join`: neighbours in one plane become one `occluder`, and convex `body`s hide by their `silhouette`; `tree` finds for a pair of facets those that may come between.
 //! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
 //!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
 //!    agree (`hidden`), or rays are traced where there is too much to cut (`rays`).
@@ -14,11 +15,14 @@
 //! Imports `geometry`, `radiometry`, `scene`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
 
 mod balance;
+mod body;
 mod certificate;
 mod contour;
 mod convex;
+mod covered;
 mod dense;
 mod divide;
+mod effect;
 mod enclosure;
 mod enforce;
 mod error;
@@ -34,6 +38,7 @@ mod overlap;
 mod pair;
 mod rays;
 mod rows;
+mod silhouette;
 mod space;
 mod tree;
 mod unhindered;

@@ -1,9 +1,12 @@
 //! What two facets exchange: nothing, all that they would unhindered, or the visible share of it.
 
+use super::effect::{Effect, Lines};
 use super::facet::Facet;
 use super::hidden::{Looker, Share};
-use super::occluder::{Between, Effect, Lines};
+use super::occluder::{Between, Near};
+use super::silhouette::Sides;
 use super::space::Space;
+use super::unhindered::exchange;
 
 /// What a pair of facets exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,6 +40,8 @@ pub(super) struct Worker<'a> {
     looker: Looker<'a>,
     between: Vec<Between>,
     lines: Lines,
+    /// Whether `lines` are those of the pair at hand.
+    has_lines: bool,
     /// Rays traced so far.
     pub rays: u64,
 }
@@ -48,14 +53,17 @@ impl<'a> Worker<'a> {
             looker: Looker::new(space),
             between: Vec::new(),
             lines: Lines::NONE,
+            has_lines: false,
             rays: 0,
         }
     }
 
-    /// The exchange of two facets; `near` are the surfaces that may come between. The same for (i, j) and (j, i), bit for bit.
-    pub fn exchange(&mut self, i: u32, j: u32, near: &[u32]) -> Exchange {
-        let (i, j) = (i.min(j), i.max(j));
-        let [a, b] = [i, j].map(|k| &self.space.facets[k as usize]);
+    /// The exchange of two facets; `near` are the surfaces that may come between facet i and others. The same for (i, j) and (j, i), bit
+    /// for bit.
+    pub fn exchange(&mut self, i: u32, j: u32, near: &[Near]) -> Exchange {
+        let (first, second) = (i.min(j), i.max(j));
+        let here = usize::from(first != i);
+        let [a, b] = [first, second].map(|k| &self.space.facets[k as usize]);
         let reach = self.space.horizon;
         let Some(a_seen) = a.in_front_of(b, reach) else {
             return Exchange::default();
@@ -63,14 +71,17 @@ impl<'a> Worker<'a> {
         let Some(b_seen) = b.in_front_of(a, reach) else {
             return Exchange::default();
         };
-        if !self.find_between(&a_seen, &b_seen, near) {
+        // What is cut off at a horizon lies on other sides.
+        let here = [&a_seen, &b_seen][here].is_whole().then_some(here);
+        if !self.find_between([&a_seen, &b_seen], near, here) {
             return Exchange::default();
         }
+        let [i, j] = [first, second];
         let nodes = [(&a_seen, i), (&b_seen, j)]
             .map(|(part, k)| part.is_whole().then(|| &self.space.nodes[k as usize]));
-        let ranges = &self.space.ranges;
-        let whole = ranges.exchange(&a_seen, &b_seen, nodes);
-        let accuracy = ranges.accuracy * whole;
+        let accuracy = self.space.accuracy(i, j);
+        let whole = exchange(&a_seen, &b_seen, nodes, accuracy);
+        let accuracy = accuracy * whole;
         if self.between.is_empty() || whole == 0.0 {
             return Exchange {
                 amount: whole,
@@ -95,33 +106,57 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Leaves in `between` what may hide some of either facet from the other; false if one surface hides all.
-    fn find_between(&mut self, a: &Facet, b: &Facet, near: &[u32]) -> bool {
+    /// Leaves in `between` what may hide some of either facet from the other; false if one body or surface hides all. The sides of `near`
+    /// are those on which the facet with the number `here` lies.
+    fn find_between(&mut self, pair: [&Facet; 2], near: &[Near], here: Option<usize>) -> bool {
         self.between.clear();
-        if near.is_empty() {
+        self.has_lines = false;
+        near.iter().all(|near| {
+            let occluder = &self.space.occluders[near.occluder as usize];
+            let mut sides = [Sides::default(); 2];
+            for (k, facet) in pair.into_iter().enumerate() {
+                sides[k] = match here == Some(k) {
+                    true => near.sides,
+                    false => occluder.sides(facet),
+                };
+            }
+            self.find_effect(pair, near.occluder, sides)
+        })
+    }
+
+    /// Adds an occluder to what lies between; false if it hides all.
+    fn find_effect(&mut self, [a, b]: [&Facet; 2], k: u32, sides: [Sides; 2]) -> bool {
+        let occluder = &self.space.occluders[k as usize];
+        if sides[0].share_a_front(sides[1])
+            || occluder.is_beside([a.centroid, b.centroid], a.radius.max(b.radius))
+            || !occluder.rises_over(a)
+            || !occluder.rises_over(b)
+        {
             return true;
         }
-        let (low, high) = (a.low.min(b.low), a.high.max(b.high));
-        let mut lines_are_set = false;
-        for &k in near {
-            let occluder = &self.space.occluders[k as usize];
-            let apart = occluder.low.cmpge(high).any() || occluder.high.cmple(low).any();
-            if apart || !occluder.rises_over(a) || !occluder.rises_over(b) {
-                continue;
-            }
-            if !lines_are_set {
-                self.lines.set(&a.shape, &b.shape);
-                lines_are_set = true;
-            }
-            match occluder.effect(&self.lines, self.space.extent) {
-                Effect::None => {}
-                Effect::Some(planes) => self.between.push(Between {
+        let is_outside = |k: usize| occluder.is_outside([a, b][k], sides[k]);
+        if occluder.is_body() && !(is_outside(0) && is_outside(1)) {
+            let mut members = occluder.members.clone();
+            return members.all(|member| {
+                let face = &self.space.occluders[member as usize];
+                self.find_effect([a, b], member, [face.sides(a), face.sides(b)])
+            });
+        }
+        if !std::mem::replace(&mut self.has_lines, true) {
+            self.lines.set(a.corners(), b.corners());
+        }
+        let ends = [a.corners(), b.corners()];
+        match occluder.effect(&self.lines, ends, sides, self.space.extent) {
+            Effect::None => true,
+            Effect::All => false,
+            Effect::Some(planes) => {
+                self.between.push(Between {
                     occluder: k,
                     planes,
-                }),
-                Effect::All => return false,
+                    sides,
+                });
+                true
             }
         }
-        true
     }
 }

@@ -17,14 +17,23 @@ pub struct Row {
     /// Unique within the matrix: the name of the group or material, with the number of the polygon in it where there are several,
     /// `/` and the number of the part where it is divided, and ` back` for the back of a two-sided surface.
     pub label: String,
-    /// Area of its radiating sides, m².
+    /// Area of its radiating sides, m², less what is covered.
     pub area: f64,
+    /// Area, m², that nothing can reach: below what stands on it, or within a solid. It does not radiate.
+    pub covered: f64,
     /// Whether it is the back.
     pub back: bool,
     /// Reflectance ρ, the mean over its area.
     pub reflectance: Power,
     /// Exitance M, W/m², the mean over its area; 0 for a back.
     pub exitance: Power,
+}
+
+impl Row {
+    /// The share of its surfaces that is covered.
+    pub fn covered_share(&self) -> f64 {
+        self.covered / (self.area + self.covered).max(f64::MIN_POSITIVE)
+    }
 }
 
 /// Rows with their facets.
@@ -50,7 +59,13 @@ enum Key {
 }
 
 impl Rows {
-    pub fn new(named: &NamedScene, frame: &Frame, options: &Options) -> Self {
+    /// `covered` tells for facets whether nothing can reach them.
+    pub fn new(
+        named: &NamedScene,
+        frame: &Frame,
+        options: &Options,
+        covered: impl FnOnce(&[Facet]) -> Vec<bool>,
+    ) -> Self {
         let NamedScene { scene, names } = named;
         let parts = options
             .max_area
@@ -75,7 +90,7 @@ impl Rows {
                 });
             }
         }
-        let mut of_facet: Vec<(u32, Facet)> = Vec::new();
+        let (mut facets, mut from) = (Vec::new(), Vec::new());
         for piece in &pieces.list {
             let surface = &cells.surfaces[piece.surface as usize];
             for back in [false, true] {
@@ -90,9 +105,17 @@ impl Rows {
                     corners.reverse();
                 }
                 if let Some(facet) = Facet::new(Convex::new(&corners)) {
-                    drafts[*row as usize].add(&facet, surface, scene);
-                    of_facet.push((*row, facet));
+                    facets.push(facet);
+                    from.push((*row, surface));
                 }
+            }
+        }
+        let covered = covered(&facets);
+        let mut of_facet: Vec<(u32, Facet)> = Vec::new();
+        for ((facet, (row, surface)), is_covered) in facets.into_iter().zip(from).zip(covered) {
+            drafts[row as usize].add(&facet, surface, scene, is_covered);
+            if !is_covered {
+                of_facet.push((row, facet));
             }
         }
         // Stable: within a row facets keep the order of the surfaces.
@@ -107,7 +130,7 @@ impl Rows {
         });
         Self {
             of_row: of_row.collect(),
-            areas: drafts.iter().map(|draft| draft.area).collect(),
+            areas: drafts.iter().map(|draft| draft.exposed.area).collect(),
             list: drafts
                 .iter()
                 .zip(labels)
@@ -145,11 +168,19 @@ fn keys(cells: &Scene, names: &Names, options: &Options) -> Vec<Key> {
     cells.surfaces.iter().map(key).collect()
 }
 
-/// A row while its facets come together; areas in the frame.
+/// A row while its facets come together.
 struct Draft {
     key: Key,
     back: bool,
+    /// How many of them are exposed.
     facets: u32,
+    exposed: Sum,
+    covered: Sum,
+}
+
+/// Area in the frame, and what it reflects and emits.
+#[derive(Default)]
+struct Sum {
     area: f64,
     reflected: Power,
     emitted: Power,
@@ -161,31 +192,40 @@ impl Draft {
             key,
             back,
             facets: 0,
-            area: 0.0,
-            reflected: Power::ZERO,
-            emitted: Power::ZERO,
+            exposed: Sum::default(),
+            covered: Sum::default(),
         }
     }
 
-    fn add(&mut self, facet: &Facet, surface: &Surface, scene: &Scene) {
+    fn add(&mut self, facet: &Facet, surface: &Surface, scene: &Scene, is_covered: bool) {
         let material = &scene.materials[surface.material as usize];
-        self.facets += 1;
-        self.area += facet.area;
-        self.reflected += material.reflectance.as_dvec3() * facet.area;
+        self.facets += u32::from(!is_covered);
+        let sum = match is_covered {
+            true => &mut self.covered,
+            false => &mut self.exposed,
+        };
+        sum.area += facet.area;
+        sum.reflected += material.reflectance.as_dvec3() * facet.area;
         if !self.back {
-            self.emitted +=
+            sum.emitted +=
                 exitance_from_radiance(material.emitted_radiance).as_dvec3() * facet.area;
         }
     }
 
     fn finish(&self, label: String, unit: f64) -> Row {
-        let area = self.area.max(f64::MIN_POSITIVE);
+        // What is covered altogether keeps its material.
+        let sum = match self.exposed.area > 0.0 {
+            true => &self.exposed,
+            false => &self.covered,
+        };
+        let area = sum.area.max(f64::MIN_POSITIVE);
         Row {
             label,
-            area: self.area * unit,
+            area: self.exposed.area * unit,
+            covered: self.covered.area * unit,
             back: self.back,
-            reflectance: self.reflected / area,
-            exitance: self.emitted / area,
+            reflectance: sum.reflected / area,
+            exitance: sum.emitted / area,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Everything that pairs are worked out from: facets, what may come between them, and the limits of accuracy.
 
+use super::body::with_bodies;
 use super::facet::{Facet, Part};
 use super::join::joined;
 use super::occluder::Occluder;
 use super::tree::Tree;
-use super::unhindered::{Nodes, Ranges};
+use super::unhindered::Nodes;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use glam::DVec3;
@@ -20,6 +21,12 @@ const TOUCH: f64 = 1e-7;
 
 /// Corners no higher over a plane than this fraction of the extent lie in it.
 const HORIZON: f64 = 1e-7;
+
+/// Of the tolerance of a row, what the errors of the formulas may come to that serve where nothing lies between.
+const UNHINDERED: f64 = 0.1;
+
+/// No unhindered exchange may be off by more than this, however little of its row it is.
+const LEAST_ACCURATE_UNHINDERED: f64 = 1e-3;
 
 /// No visible share may be off by more than this, however little of its row it is.
 const LEAST_ACCURATE: f64 = 0.02;
@@ -42,8 +49,6 @@ pub(super) struct Space {
     pub horizon: f64,
     /// How accurate the row of each facet must be.
     pub budgets: Vec<Budget>,
-    /// Which formula serves where nothing lies between.
-    pub ranges: Ranges,
     pub visibility: Box<dyn Visibility>,
 }
 
@@ -53,7 +58,6 @@ impl Space {
         occluders: Vec<Occluder>,
         extent: f64,
         budgets: Vec<Budget>,
-        ranges: Ranges,
         visibility: Box<dyn Visibility>,
     ) -> Self {
         Self {
@@ -64,7 +68,6 @@ impl Space {
             extent,
             horizon: HORIZON * extent,
             budgets,
-            ranges,
             visibility,
         }
     }
@@ -78,24 +81,35 @@ pub(super) struct Budget {
     relative: f64,
     /// Of any exchange, as far as equal errors go.
     absolute: f64,
+    /// Of what any pair exchanges unhindered, relative.
+    pub accuracy: f64,
 }
 
 impl Budget {
     /// For a row of the given area and length (see [`row_lengths`]), one of `count`.
     pub fn new(tolerance: f64, area: f64, length: f64, count: usize) -> Self {
-        let tolerance = 0.5 * tolerance;
+        let relative = tolerance / length.max(f64::MIN_POSITIVE);
         Self {
-            relative: tolerance / length.max(f64::MIN_POSITIVE),
-            absolute: tolerance * area / (count as f64).sqrt(),
+            relative: 0.5 * relative,
+            absolute: 0.5 * tolerance * area / (count as f64).sqrt(),
+            accuracy: (UNHINDERED * relative).min(LEAST_ACCURATE_UNHINDERED),
         }
     }
 }
 
 impl Space {
+    /// The relative error that what a pair exchanges unhindered may have.
+    pub fn accuracy(&self, i: u32, j: u32) -> f64 {
+        let [i, j] = [i, j].map(|k| self.budgets[k as usize].accuracy);
+        i.min(j)
+    }
+
     /// The error that the visible share of a pair may have that would exchange `whole` unhindered.
     pub fn share_tolerance(&self, i: u32, j: u32, whole: f64) -> f64 {
         let share = |k: u32| {
-            let Budget { relative, absolute } = self.budgets[k as usize];
+            let Budget {
+                relative, absolute, ..
+            } = self.budgets[k as usize];
             relative + absolute / whole
         };
         share(i).min(share(j)).min(LEAST_ACCURATE)
@@ -119,7 +133,7 @@ pub(super) fn row_lengths(facets: &[Facet], of_row: &[Range<u32>]) -> Vec<f64> {
     let length = |range: &Range<u32>| {
         let members = &facets[range.start as usize..range.end as usize];
         let area: f64 = members.iter().map(|facet| facet.area).sum();
-        members.iter().map(square).sum::<f64>().sqrt() / area
+        members.iter().map(square).sum::<f64>().sqrt() / area.max(f64::MIN_POSITIVE)
     };
     of_row.par_iter().map(length).collect()
 }
@@ -130,7 +144,8 @@ impl Part<'_> {
     }
 }
 
-/// The surfaces of a scene, with neighbours in one plane joined; `positions` are its vertices in a frame of the given extent.
+/// The surfaces of a scene, with neighbours in one plane joined, and convex bodies that they bound; `positions` are its vertices in a
+/// frame of the given extent.
 pub(super) fn occluders(scene: &Scene, positions: &[DVec3], extent: f64) -> Vec<Occluder> {
     let polygons = scene
         .surfaces
@@ -140,15 +155,12 @@ pub(super) fn occluders(scene: &Scene, positions: &[DVec3], extent: f64) -> Vec<
     let surfaces = joined(polygons, positions, FLAT * extent);
     let occluder = |surface: super::join::Joined| {
         let mut occluder = Occluder::new(surface.corners, TOUCH * extent)?;
-        let warp = surface
-            .vertices
-            .iter()
-            .map(|v| occluder.height(*v).abs())
-            .fold(0.0, f64::max);
-        occluder.thickness = occluder.thickness.max(warp + TOUCH * extent);
+        let warp = occluder.front().warp(&surface.vertices);
+        occluder.thicken(warp + TOUCH * extent);
         Some(occluder)
     };
-    surfaces.into_iter().filter_map(occluder).collect()
+    let surfaces = surfaces.into_iter().filter_map(occluder).collect();
+    with_bodies(surfaces, FLAT * extent)
 }
 
 /// The same as triangles, for rays.

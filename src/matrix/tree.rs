@@ -1,7 +1,7 @@
 //! A tree over the facets: for one facet, all others, each with the surfaces that may come between.
 
 use super::facet::Facet;
-use super::occluder::{Occluder, Side};
+use super::occluder::{Near, Occluder};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -89,7 +89,7 @@ impl Tree {
         facet: &Facet,
         occluders: &[Occluder],
         from: u32,
-        visit: &mut impl FnMut(u32, &[u32]),
+        visit: &mut impl FnMut(u32, &[Near]),
     ) {
         if self.nodes.is_empty() {
             return;
@@ -100,13 +100,12 @@ impl Tree {
             occluders,
             from,
             near: Vec::new(),
-            sides: Vec::new(),
         };
         for (k, occluder) in (0..).zip(occluders) {
-            let side = occluder.side(facet.corners());
-            if side != Side::On && occluder.rises_over(facet) {
-                walk.near.push(k);
-                walk.sides.push(side);
+            let sides = occluder.sides(facet);
+            let is_in_plane = !occluder.is_body() && sides.is_on();
+            if !occluder.is_face && !is_in_plane && occluder.rises_over(facet) {
+                walk.near.push(Near { occluder: k, sides });
             }
         }
         let count = walk.near.len();
@@ -120,13 +119,12 @@ struct Walk<'a> {
     facet: &'a Facet,
     occluders: &'a [Occluder],
     from: u32,
-    /// Occluders for the levels on the way, one after the other, with the sides on which the facet lies.
-    near: Vec<u32>,
-    sides: Vec<Side>,
+    /// Occluders for the levels on the way, one after the other.
+    near: Vec<Near>,
 }
 
 impl Walk<'_> {
-    fn node(&mut self, number: usize, near: Range<usize>, visit: &mut impl FnMut(u32, &[u32])) {
+    fn node(&mut self, number: usize, near: Range<usize>, visit: &mut impl FnMut(u32, &[Near])) {
         let tree = self.tree;
         let node = &tree.nodes[number];
         let (middle, half) = ((node.low + node.high) * 0.5, (node.high - node.low) * 0.5);
@@ -136,18 +134,18 @@ impl Walk<'_> {
         }
         let begin = self.near.len();
         let (low, high) = (node.low.min(self.facet.low), node.high.max(self.facet.high));
+        let (ends, width) = ([self.facet.centroid, middle], half.length());
+        let width = width.max(self.facet.radius);
         for place in near {
-            let (k, side) = (self.near[place], self.sides[place]);
-            let occluder = &self.occluders[k as usize];
-            if occluder.low.cmpge(high).any() || occluder.high.cmple(low).any() {
-                continue;
+            let near = self.near[place];
+            let occluder = &self.occluders[near.occluder as usize];
+            let is_apart = occluder.low.cmpge(high).any() || occluder.high.cmple(low).any();
+            let is_between = !is_apart
+                && !occluder.is_beside(ends, width)
+                && !(near.sides).share_a_front(occluder.sides_of_box(node.low, node.high));
+            if is_between {
+                self.near.push(near);
             }
-            let there = occluder.side_of_box(node.low, node.high);
-            if there == Side::On || (there == side && side != Side::Across) {
-                continue;
-            }
-            self.near.push(k);
-            self.sides.push(side);
         }
         let end = self.near.len();
         if node.second == 0 {
@@ -162,6 +160,5 @@ impl Walk<'_> {
             self.node(node.second as usize, begin..end, visit);
         }
         self.near.truncate(begin);
-        self.sides.truncate(begin);
     }
 }

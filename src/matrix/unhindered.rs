@@ -3,13 +3,10 @@
 use super::contour;
 use super::facet::Facet;
 use super::gauss::each_node;
-use crate::form_factor::point_to_polygon;
+use crate::form_factor::point_to_polygon_from;
 use glam::DVec3;
 use std::borrow::Cow;
 use std::f64::consts::PI;
-
-/// Of the tolerance, the relative error that is allowed here.
-const SHARE: f64 = 0.1;
 
 /// The error of Gauss's rule with n² points a tile falls like c / (d + 1.4)²ⁿ, where d is the distance between the facets in radii; c was
 /// fitted to the worst of random pairs, 1 : 1 to 1 : 5 long. First for points on the smaller facet that see all of the other (Eq. 2),
@@ -24,16 +21,6 @@ const AFAR: f64 = 6.0;
 
 /// Nearer than this many radii of the smaller facet the double integral along the edges is used in any case.
 const NEAR: f64 = 0.75;
-
-/// The distances from which each rule is accurate enough.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ranges {
-    /// Relative error that they are made for; measured by the test at the end of this file.
-    pub accuracy: f64,
-    over_one: [f64; 4],
-    over_both: [f64; 2],
-    afar: f64,
-}
 
 /// The points of a facet with which far ones replace it, with their share of the area: four a tile, and nine.
 #[derive(Debug, Clone, Default)]
@@ -51,41 +38,33 @@ impl Nodes {
     }
 }
 
-impl Ranges {
-    /// For rows with errors up to `tolerance`.
-    pub fn new(tolerance: f64) -> Self {
-        let accuracy = SHARE * tolerance;
-        let from = |k: usize, c: f64| (c / accuracy).powf(0.5 / (k + 2) as f64) - 1.4;
-        Self {
-            accuracy,
-            over_one: std::array::from_fn(|k| from(k, OVER_ONE[k]).max(NEAR)),
-            over_both: std::array::from_fn(|k| from(k, OVER_BOTH[k])),
-            // Shares need not be more accurate than the tolerance.
-            afar: (AFAR / tolerance).powf(0.25) - 1.4,
-        }
+/// A_i F_ij of two facets each of which lies in front of the other, to `accuracy`, relative; `nodes` are theirs, if at hand.
+pub(super) fn exchange(a: &Facet, b: &Facet, nodes: [Option<&Nodes>; 2], accuracy: f64) -> f64 {
+    let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
+    let (small, large) = if a.radius <= b.radius { (a, b) } else { (b, a) };
+    let suits = |k: usize, c: f64, radius: f64| {
+        let distance = gap.max(0.0) / radius + 1.4;
+        distance.powi(2 * (k as i32 + 2)) * accuracy > c
+    };
+    let mut over_both = (0..).zip(OVER_BOTH);
+    if let Some((k, _)) = over_both.find(|(k, c)| suits(*k, *c, large.radius)) {
+        let made = [(a, nodes[0]), (b, nodes[1])].map(|(facet, at_hand)| {
+            at_hand.map_or_else(|| Cow::Owned(Nodes::new(facet)), Cow::Borrowed)
+        });
+        return between_nodes(a, &made[0].0[k], b, &made[1].0[k]);
     }
+    let mut over_one_of = (0..).zip(OVER_ONE);
+    let is_near = gap <= NEAR * small.radius;
+    match over_one_of.find(|(k, c)| !is_near && suits(*k, *c, small.radius)) {
+        Some((k, _)) => over_one(small, large, k + 2),
+        None => contour::exchange(a.corners(), b.corners()).max(0.0),
+    }
+}
 
-    /// Whether [`seen_afar`] is accurate enough for the share that is visible of a facet `gap` away.
-    pub fn is_afar(&self, gap: f64, of: &Facet) -> bool {
-        gap > self.afar * of.radius
-    }
-
-    /// A_i F_ij of two facets each of which lies in front of the other; `nodes` are theirs, if at hand.
-    pub fn exchange(&self, a: &Facet, b: &Facet, nodes: [Option<&Nodes>; 2]) -> f64 {
-        let gap = a.centroid.distance(b.centroid) - a.radius - b.radius;
-        let (small, large) = if a.radius <= b.radius { (a, b) } else { (b, a) };
-        let suits = |from: &f64, radius: f64| gap > from * radius;
-        if let Some(k) = self.over_both.iter().position(|d| suits(d, large.radius)) {
-            let made = [(a, nodes[0]), (b, nodes[1])].map(|(facet, at_hand)| {
-                at_hand.map_or_else(|| Cow::Owned(Nodes::new(facet)), Cow::Borrowed)
-            });
-            return between_nodes(a, &made[0].0[k], b, &made[1].0[k]);
-        }
-        match self.over_one.iter().position(|d| suits(d, small.radius)) {
-            Some(k) => over_one(small, large, k + 2),
-            None => contour::exchange(a.corners(), b.corners()).max(0.0),
-        }
-    }
+/// Whether [`seen_afar`] is accurate to `tolerance`, relative, for a facet `gap` away.
+pub(super) fn is_afar(gap: f64, of: &Facet, tolerance: f64) -> bool {
+    let distance = gap.max(0.0) / of.radius + 1.4;
+    distance.powi(4) * tolerance > AFAR
 }
 
 fn between_nodes(a: &Facet, of_a: &[(DVec3, f64)], b: &Facet, of_b: &[(DVec3, f64)]) -> f64 {
@@ -113,11 +92,7 @@ fn over_one(outer: &Facet, inner: &Facet, points: usize) -> f64 {
 
 /// Eq. (2) from one point to a polygon above its horizon and facing it.
 pub(super) fn seen(normal: DVec3, from: DVec3, corners: &[DVec3]) -> f64 {
-    let mut relative = [DVec3::ZERO; super::convex::Convex::MOST];
-    for (slot, corner) in relative.iter_mut().zip(corners) {
-        *slot = *corner - from;
-    }
-    point_to_polygon(normal, &relative[..corners.len()]).max(0.0)
+    point_to_polygon_from(normal, from, corners).max(0.0)
 }
 
 /// The same from afar, to a polygon with the unit normal `of`: the integrand at the midpoints of the sides of triangles.
@@ -150,9 +125,8 @@ mod tests {
         Facet::new(Convex::new(&[at, at + u, at + u + v, at + v])).expect("has an area")
     }
 
-    /// The largest relative difference between the rules for a tolerance and the contour integral, at all distances, orientations and shapes.
-    fn worst(tolerance: f64) -> f64 {
-        let ranges = Ranges::new(tolerance);
+    /// The largest relative difference between the rules and the contour integral, at all distances, orientations and shapes.
+    fn worst(accuracy: f64) -> f64 {
         let mut random = fastrand::Rng::with_seed(7);
         let mut worst: f64 = 0.0;
         for i in 0..600 {
@@ -177,7 +151,7 @@ mod tests {
                 continue;
             }
             let exact = contour::exchange(a.corners(), b.corners());
-            let quick = ranges.exchange(&a, &b, [None, None]);
+            let quick = exchange(&a, &b, [None, None], accuracy);
             worst = worst.max((quick / exact - 1.0).abs());
         }
         worst
@@ -185,17 +159,17 @@ mod tests {
 
     #[test]
     fn all_formulas_agree_with_the_contour_integral() {
-        let standard = worst(1e-4);
-        assert!(standard < 1e-5, "{standard:e}");
+        let fine = worst(1e-5);
+        assert!(fine < 1e-5, "{fine:e}");
         let coarse = worst(1e-3);
-        assert!(coarse < 1e-4 && coarse > standard, "{coarse:e}");
+        assert!(coarse < 1e-3 && coarse > fine, "{coarse:e}");
     }
 
     #[test]
     fn midpoints_are_enough_from_afar() {
         let mut random = fastrand::Rng::with_seed(3);
         for tolerance in [1e-3, 1e-4] {
-            let ranges = Ranges::new(tolerance);
+            let afar = (AFAR / tolerance).powf(0.25) - 1.4;
             let (mut worst, mut nearer): (f64, f64) = (0.0, 0.0);
             for _ in 0..2000 {
                 let long = [1.0, 5.0][random.usize(0..2)];
@@ -211,9 +185,10 @@ mod tests {
                     let exact = seen(normal, from, of.corners());
                     seen_afar(normal, from, of.normal, of.corners()) / exact - 1.0
                 };
-                assert!(ranges.is_afar(1.0001 * ranges.afar * of.radius, &of));
-                worst = worst.max(error(ranges.afar).abs());
-                nearer = nearer.max(error(0.3 * ranges.afar).abs());
+                assert!(is_afar(1.0001 * afar * of.radius, &of, tolerance));
+                assert!(!is_afar(0.9999 * afar * of.radius, &of, tolerance));
+                worst = worst.max(error(afar).abs());
+                nearer = nearer.max(error(0.3 * afar).abs());
             }
             assert!(
                 worst < tolerance && nearer > tolerance,

@@ -3,9 +3,11 @@
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// A file could not be written; nothing was left behind, and a file of that name from before is untouched.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +72,34 @@ fn is_alive(process: u32) -> bool {
     !processes.join("self").exists() || processes.join(process.to_string()).exists()
 }
 
+/// Checks that a file can be made beside `path`, before a long run whose result goes there.
+///
+/// # Errors
+/// When the folder cannot be written to, or `path` names no file or a folder.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let reason = match Draft::create(path) {
+        Ok(_) if !path.is_dir() => return Ok(()),
+        Ok(_) => io::ErrorKind::IsADirectory.into(),
+        Err(reason) => reason,
+    };
+    Err(WriteError {
+        path: path.to_path_buf(),
+        reason,
+    })
+}
+
+/// Temporary files that exist now.
+static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes all temporary files and lets none come about or take its real name any more: for a process that is about to end.
+pub fn abandon_drafts() {
+    // Never unlocked, so that no other thread makes or publishes a file.
+    let mut drafts = ManuallyDrop::new(DRAFTS.lock().unwrap_or_else(PoisonError::into_inner));
+    for path in drafts.drain(..) {
+        let _ = fs::remove_file(path);
+    }
+}
+
 /// The temporary file; removed when dropped unless it was published.
 struct Draft {
     path: Option<PathBuf>,
@@ -91,12 +121,14 @@ impl Draft {
                 NUMBER.fetch_add(1, Ordering::Relaxed)
             ));
             let temporary = path.with_file_name(temporary);
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
             match OpenOptions::new()
                 .write(true)
                 .create_new(true)
                 .open(&temporary)
             {
                 Ok(file) => {
+                    drafts.push(temporary.clone());
                     return Ok((
                         Self {
                             path: Some(temporary),
@@ -112,7 +144,9 @@ impl Draft {
 
     fn publish(mut self, path: &Path) -> io::Result<()> {
         if let Some(temporary) = &self.path {
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
             fs::rename(temporary, path)?;
+            drafts.retain(|draft| draft != temporary);
         }
         self.path = None;
         Ok(())
@@ -122,6 +156,8 @@ impl Draft {
 impl Drop for Draft {
     fn drop(&mut self) {
         if let Some(temporary) = &self.path {
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
+            drafts.retain(|draft| draft != temporary);
             // Already failing: the first error is the one to report.
             let _ = fs::remove_file(temporary);
         }

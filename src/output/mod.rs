@@ -16,7 +16,7 @@ mod ply;
 mod table;
 mod vtu;
 
-pub use atomic::{WriteError, remove_abandoned, write_atomically};
+pub use atomic::{WriteError, abandon_drafts, check_writable, remove_abandoned, write_atomically};
 pub use exr::write_exr;
 pub use glb::{GlbFacts, write_glb};
 pub use html::{Moment, Page, write_html};

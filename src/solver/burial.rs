@@ -1,7 +1,7 @@
 //! Which vertices are buried: those from which every ray ends on a side that does not radiate.
 
-use super::escape::{Backing, cosine_direction};
-use crate::geometry::{jitter, lift};
+use super::escape::Backing;
+use crate::geometry::{cosine_direction, jitter, lift};
 use crate::mesh::Mesh;
 use crate::scene::Sides;
 use crate::visibility::{Ray, Visibility};

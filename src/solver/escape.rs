@@ -1,14 +1,13 @@
 //! What leaves the scene: cosine-distributed rays from the shooter that meet nothing, or a side that does not radiate.
 
 use crate::form_factor::Source;
-use crate::geometry::{jitter, lift};
+use crate::geometry::{cosine_direction, jitter, lift};
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::Sides;
 use crate::visibility::{Hit, Ray, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 use std::ops::{AddAssign, Mul};
 
 /// What stands behind a triangle of the visibility scene.
@@ -146,13 +145,4 @@ fn ray(source: &Source, draw: &Draw, extent: f64) -> Ray {
         origin: lift(draw.point, normal, extent).as_vec3(),
         direction: direction.as_vec3(),
     }
-}
-
-/// A direction about `normal`, cosine-distributed for evenly distributed (a, b) in the unit square.
-pub(super) fn cosine_direction(normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-    let tangent = normal.any_orthonormal_vector();
-    let bitangent = normal.cross(tangent);
-    let (sine, cosine) = (a.sqrt(), (1.0 - a).sqrt());
-    let (y, x) = (TAU * b).sin_cos();
-    tangent * (sine * x) + bitangent * (sine * y) + normal * cosine
 }

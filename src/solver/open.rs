@@ -1,13 +1,13 @@
 //! The light of a solved mesh at points that lie on no surface: a plane of work, a meter on a stand.
 
 use super::audit::FINER;
-use super::escape::{Backing, cosine_direction, is_dark};
+use super::escape::{Backing, is_dark};
 use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::evaluate;
 use super::source::{cells_of, source_from};
 use crate::form_factor::{Receiver, Sampler, SourceThresholds, ToleranceScale};
-use crate::geometry::jitter;
+use crate::geometry::{cosine_direction, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::Sides;

@@ -60,9 +60,9 @@ fn a_dense_table_has_a_row_for_every_surface_that_ends_in_its_factors() {
         .filter(|line| !line.starts_with('#'))
         .collect();
     assert_eq!(lines.len(), 7);
-    assert!(
-        lines[0].starts_with("label,area_m2,row_sum,row_error,limited,to back,to front,to floor")
-    );
+    assert!(lines[0].starts_with(
+        "label,area_m2,covered_m2,row_sum,row_error,limited,to back,to front,to floor"
+    ));
     for (i, line) in lines[1..].iter().enumerate() {
         let cells: Vec<&str> = line.split(',').collect();
         assert_eq!(
@@ -236,6 +236,12 @@ fn bad_input_is_refused_with_its_reason() {
         .assert_refused(3, &["no/such.obj"]);
     form_factors(&cube, &folder.path().join("no/such/F.csv"), &[])
         .assert_refused(1, &["cannot write", "F.csv"]);
+    form_factors(&cube, &folder.path().join("F.csv"), &["--max-area", "1e-9"])
+        .assert_refused(3, &["6000000 pieces", "200000", "larger max-area"]);
+    fs::create_dir(folder.path().join("D.csv")).expect("can be made");
+    form_factors(&cube, &folder.path().join("D.csv"), &[])
+        .assert_refused(1, &["D.csv", "directory"]);
+    fs::remove_dir(folder.path().join("D.csv")).expect("is empty");
     for flags in [
         ["--tolerance", "0"],
         ["--max-area", "nan"],
@@ -250,4 +256,71 @@ fn bad_input_is_refused_with_its_reason() {
         );
     }
     assert_eq!(names(folder.path()), ["cube.obj"]);
+}
+
+#[test]
+fn walls_that_face_outwards_are_named() {
+    let folder = folder();
+    let obj = fs::read_to_string(cube(&folder)).expect("was written");
+    let turned = |which: &str| {
+        let mut lines: Vec<String> = Vec::new();
+        let mut name = "";
+        for line in obj.lines() {
+            name = line.strip_prefix("o ").unwrap_or(name);
+            let corners = line.strip_prefix("f ").filter(|_| which.contains(name));
+            lines.push(corners.map_or(line.to_owned(), |corners| {
+                let turned: Vec<&str> = corners.split(' ').rev().collect();
+                format!("f {}", turned.join(" "))
+            }));
+        }
+        let path = folder.path().join("turned.obj");
+        fs::write(&path, lines.join("\n")).expect("can be written");
+        let run = form_factors(&path, &folder.path().join("F.csv"), &[]);
+        run.assert_success();
+        run
+    };
+    let run = turned("floor");
+    assert!(run.out.contains("open"), "{}", run.out);
+    assert!(
+        run.err.contains("1 of 6 rows see no other (`floor`)"),
+        "{}",
+        run.err
+    );
+    let run = turned("back front floor top left right");
+    assert!(run.err.contains("no row sees any other"), "{}", run.err);
+    let json = fs::read_to_string(folder.path().join("F.certificate.json")).expect("was written");
+    assert!(json.contains("no row sees any other"), "{json}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_run_leaves_nothing_behind() {
+    let folder = folder();
+    let output = folder.path().join("F.csv");
+    // Minutes of work.
+    let mut child = super::command()
+        .args(["form-factors", text(&scene("cornell-box")), "-o"])
+        .args([text(&output), "--max-area", "2e-4"])
+        .stderr(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("can be started");
+    let started = std::time::Instant::now();
+    let is_writing = || !names(folder.path()).is_empty();
+    // That the folder can be written to is tried first, so it must last.
+    while !(is_writing() && is_writing()) && started.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(200));
+    }
+    assert!(names(folder.path())[0].ends_with(".part"));
+    let kill = std::process::Command::new("sh")
+        .args(["-c", &format!("kill -INT {}", child.id())])
+        .status();
+    assert!(kill.expect("can be started").success());
+    let code = child.wait().expect("ends").code();
+    assert_eq!(code, Some(130));
+    assert!(
+        names(folder.path()).is_empty(),
+        "{:?}",
+        names(folder.path())
+    );
 }

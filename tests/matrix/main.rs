@@ -5,7 +5,9 @@ mod common;
 
 mod balance;
 mod closed_forms;
+mod covered;
 mod grouping;
 mod invariants;
 mod obstructed;
+mod published;
 mod setup;

@@ -39,7 +39,7 @@ pub fn write_matrix_market(
         }
         writeln!(
             out,
-            "% number, area (m^2) and label of the rows and columns:"
+            "% number, exposed area (m^2) and label of the rows and columns:"
         )?;
         for (number, row) in (1..).zip(table.rows) {
             writeln!(

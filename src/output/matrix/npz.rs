@@ -8,7 +8,7 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
+/// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` and `covered` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
 /// (pairs of row and column, from 0). `numpy.load` reads them.
 ///
 /// # Errors
@@ -20,32 +20,49 @@ pub fn write_npz(
 ) -> Result<Certificate, WriteError> {
     let mut certificate = None;
     write_atomically(path, |out| {
-        let n = table.rows.len();
         let mut zip = ZipWriter::new(out);
-        begin(&mut zip, "F", "<f8", &[n, n])?;
-        let known = feed(&mut |row| floats(&mut zip, row.values))?;
-        let areas: Vec<f64> = table.rows.iter().map(|row| row.area).collect();
-        for (name, values) in [
-            ("area", &areas),
-            ("row_sum", &known.row_sums),
-            ("row_error", &known.row_errors),
-        ] {
-            begin(&mut zip, name, "<f8", &[n])?;
-            floats(&mut zip, values)?;
-        }
-        begin(&mut zip, "back", "|b1", &[n])?;
-        let backs: Vec<u8> = table.rows.iter().map(|row| u8::from(row.back)).collect();
-        zip.write_all(&backs)?;
-        labels(&mut zip, table)?;
-        begin(&mut zip, "limited", "<u4", &[known.limited.len(), 2])?;
-        for number in known.limited.as_flattened() {
-            zip.write_all(&number.to_le_bytes())?;
+        match fill(&mut zip, table, feed) {
+            Ok(known) => certificate = Some(known),
+            Err(error) => {
+                // Dropped, it would try to finish the archive, and complain that it cannot.
+                std::mem::forget(zip);
+                return Err(error);
+            }
         }
         zip.finish().map_err(io::Error::other)?;
-        certificate = Some(known);
         Ok(())
     })?;
     Ok(certificate.expect("the feed has ended well"))
+}
+
+fn fill<W: Write + Seek>(
+    zip: &mut ZipWriter<W>,
+    table: &MatrixTable<'_>,
+    feed: impl Feed,
+) -> io::Result<Certificate> {
+    let n = table.rows.len();
+    begin(zip, "F", "<f8", &[n, n])?;
+    let known = feed(&mut |row| floats(zip, row.values))?;
+    let areas: Vec<f64> = table.rows.iter().map(|row| row.area).collect();
+    let covered: Vec<f64> = table.rows.iter().map(|row| row.covered).collect();
+    for (name, values) in [
+        ("area", &areas),
+        ("covered", &covered),
+        ("row_sum", &known.row_sums),
+        ("row_error", &known.row_errors),
+    ] {
+        begin(zip, name, "<f8", &[n])?;
+        floats(zip, values)?;
+    }
+    begin(zip, "back", "|b1", &[n])?;
+    let backs: Vec<u8> = table.rows.iter().map(|row| u8::from(row.back)).collect();
+    zip.write_all(&backs)?;
+    labels(zip, table)?;
+    begin(zip, "limited", "<u4", &[known.limited.len(), 2])?;
+    for number in known.limited.as_flattened() {
+        zip.write_all(&number.to_le_bytes())?;
+    }
+    Ok(known)
 }
 
 /// Opens the file of an array and writes its head: format 1.0, padded so that the data begin at a multiple of 64.

@@ -6,8 +6,8 @@ use crate::output::{WriteError, write_atomically};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes lines of comment (`#`), a header and one line a row: label, area in m², row sum, error estimate of the row, number of
-/// its entries that are less accurate than asked, then F_i1 to F_in.
+/// Writes lines of comment (`#`), a header and one line a row: label, area in m² less what is covered, covered area, row sum, error
+/// estimate of the row, number of its entries that are less accurate than asked, then F_i1 to F_in.
 ///
 /// # Errors
 /// When the file cannot be written, or `feed` fails.
@@ -23,19 +23,20 @@ pub fn write_matrix_csv(
         }
         writeln!(
             out,
-            "# columns: label, area (m^2), sum of the row, estimated error of the row (L2), entries at the limit of refinement, F_i1 ... F_in"
+            "# columns: label, exposed area (m^2), area that nothing can reach (m^2), sum of the row, estimated error of the row (L2), entries at the limit of refinement, F_i1 ... F_in"
         )?;
-        write!(out, "label,area_m2,row_sum,row_error,limited")?;
+        write!(out, "label,area_m2,covered_m2,row_sum,row_error,limited")?;
         for row in table.rows {
             write!(out, ",{}", quoted(&format!("to {}", row.label)))?;
         }
         writeln!(out)?;
         certificate = Some(feed(&mut |row| {
             let about = &table.rows[row.index];
-            let [area, sum, error] = [about.area, row.sum, row.error].map(number);
+            let [area, covered, sum, error] =
+                [about.area, about.covered, row.sum, row.error].map(number);
             write!(
                 out,
-                "{},{area},{sum},{error},{}",
+                "{},{area},{covered},{sum},{error},{}",
                 quoted(&about.label),
                 row.limited.len()
             )?;
