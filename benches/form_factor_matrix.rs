@@ -27,7 +27,7 @@ const FINER: [f64; 5] = [0.0165, 0.00252, 0.00058, 0.00021, 0.000113];
 /// The largest area of the parts of a room of 1 m, for 40,560 of them.
 const STREAMED: f64 = 1.0 / 82.0 / 82.0;
 
-const TOLERANCES: [f64; 3] = [1e-3, 2e-4, 1e-4];
+const TOLERANCES: [f64; 4] = [1e-3, 4e-4, 2e-4, 1e-4];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
