@@ -28,14 +28,9 @@ for tests in "--test visibility" "--lib visibility::"; do
         cargo +nightly test --target "$host" $tests
 done
 
-cargo test --quiet --no-run --test visibility --lib
-for tests in "visibility" "radiosity visibility::"; do
-    read -r test filter <<<"$tests"
-    binary=$(find "${CARGO_TARGET_DIR:-target}/debug/deps" -maxdepth 1 -name "$test-*" -executable -type f -printf '%T@ %p\n' |
-        sort -n | tail -1 | cut -d' ' -f2)
-    check "valgrind: $test, instruction sets that valgrind knows" \
-        valgrind --quiet --error-exitcode=9 --leak-check=no "$binary" --test-threads=1 ${filter:+"$filter"}
-done
+binary=$(cargo test --no-run --lib 2>&1 | sed -n 's/^ *Executable .*(\(.*\))$/\1/p')
+check "valgrind: --lib visibility::" \
+    valgrind --quiet --error-exitcode=9 --leak-check=no "$binary" --test-threads=1 visibility::
 
 if cargo +nightly miri --version >/dev/null 2>&1; then
     check "Miri: geometry, form factors, mesh" \
