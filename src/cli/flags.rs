@@ -84,6 +84,9 @@ pub(super) struct SolveFlags {
     /// Points at which the error is estimated at the end; 0 for no estimate
     #[arg(long, value_name = "N", help_heading = PROGRESS)]
     audit_points: Option<usize>,
+    /// With more patches than this, all shoot at once as clusters instead of one after the other
+    #[arg(long, value_name = "PATCHES", help_heading = PROGRESS)]
+    cluster_from: Option<usize>,
     /// Stop after this many shots
     #[arg(long, value_name = "N", help_heading = PROGRESS)]
     max_shots: Option<u64>,

@@ -4,6 +4,7 @@
 //! F(x, s) is the cosine-weighted fraction of the hemisphere above x that the polygon s fills, so that the
 //! irradiance is E(x) = Σ F(x, s) B(s). Imports `geometry`, `radiometry` and the visibility trait.
 
+mod cluster;
 mod disagreement;
 mod disk;
 mod edge;
@@ -13,6 +14,7 @@ mod polygon;
 mod sampling;
 mod source;
 
+pub use cluster::{ClusterScratch, Clusters, Tile};
 pub use disk::point_to_disk;
 pub use hybrid::{Formula, Receiver};
 pub use partition::{SourceThresholds, ToleranceScale};

@@ -25,6 +25,20 @@ pub struct Gather {
     pub visibility: Option<f32>,
 }
 
+impl Gather {
+    /// The mean of what some points receive.
+    pub fn mean(of: &[Self]) -> Self {
+        let indices = of.iter().filter_map(|g| g.visibility);
+        let known = indices.clone().count();
+        let count = of.len() as f32;
+        Self {
+            irradiance: of.iter().map(|g| g.irradiance).sum::<Spectrum>() / count,
+            unoccluded: of.iter().map(|g| g.unoccluded).sum::<Spectrum>() / count,
+            visibility: (known > 0).then(|| indices.sum::<f32>() / known as f32),
+        }
+    }
+}
+
 /// Evaluates sources at points.
 pub struct Sampler<'a> {
     /// Who answers the rays.

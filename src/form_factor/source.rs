@@ -40,7 +40,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    fn new(corners: [DVec3; 4], shape: SourceShape) -> Self {
+    pub(super) fn new(corners: [DVec3; 4], shape: SourceShape) -> Self {
         let count = shape.corners();
         let used = &corners[..count];
         let centroid = polygon::centroid(used);
@@ -226,7 +226,7 @@ impl Source {
     }
 
     /// The cells of the deepest level with their radiosity times area, for drawing points in proportion to it.
-    pub fn finest(&self) -> impl ExactSizeIterator<Item = (&Cell, Spectrum)> {
+    pub fn finest(&self) -> impl ExactSizeIterator<Item = (&Cell, Spectrum)> + Clone {
         self.cells[level_start(self.levels)..]
             .iter()
             .map(|c| (c, c.radiosity * c.area as f32))

@@ -34,6 +34,7 @@ impl Mesh {
             full_weights: Vec::new(),
             touched: Vec::new(),
             continuation: Default::default(),
+            weld: Default::default(),
             at: FxHashMap::default(),
             limits,
         };
@@ -68,7 +69,7 @@ impl Mesh {
     fn add_patch(&mut self, mut patch: Patch) {
         let id = self.patches.len() as u32;
         let first = self.elements.len() as u32;
-        patch.grid = grid_of(&patch);
+        patch.grid = grid_of(&patch, self.limits.min_size * self.frame.extent());
         let (columns, rows) = patch.grid;
         self.patches.push(patch);
         self.touched.push(true);
@@ -148,13 +149,17 @@ pub(super) fn centre_of(corners: &[Lattice]) -> Lattice {
     }
 }
 
-/// A grid whose cells are between 1 : √2 and √2 : 1, of powers of two.
-fn grid_of(patch: &Patch) -> (u32, u32) {
+/// A grid of powers of two whose cells are between 1 : √2 and √2 : 1, unless that would make them shorter than `shortest`.
+fn grid_of(patch: &Patch, shortest: f64) -> (u32, u32) {
     let &[a, b, c, d] = patch.corners() else {
         return (1, 1);
     };
     let width = a.distance(b).max(c.distance(d));
     let height = b.distance(c).max(d.distance(a));
-    let steps = (width / height).log2().round().clamp(-10.0, 10.0) as i32;
+    let most = (width.max(height) / shortest)
+        .log2()
+        .floor()
+        .clamp(0.0, 10.0);
+    let steps = (width / height).log2().round().clamp(-most, most) as i32;
     (1 << steps.max(0), 1 << (-steps).max(0))
 }

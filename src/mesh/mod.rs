@@ -15,6 +15,7 @@ mod lattice;
 mod patch;
 mod refine;
 mod restore;
+mod weld;
 
 pub use build::MeshLimits;
 pub use contact::{Piece, Pieces, pieces as split_at_contacts};
@@ -60,6 +61,8 @@ pub struct Mesh {
     pub full_weights: Vec<f64>,
     #[serde(skip)]
     continuation: buried::Continuation,
+    #[serde(skip)]
+    weld: weld::Weld,
     /// Patches that were split since hanging vertices were last found.
     #[serde(skip)]
     touched: Vec<bool>,

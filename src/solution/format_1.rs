@@ -197,6 +197,7 @@ impl From<OptionsThen> for Options {
             tolerance: then.tolerance,
             regather: then.regather,
             audit_points: then.audit_points,
+            cluster_from: usize::MAX,
             max_shots: then.max_shots,
             time_limit: then.time_limit,
             max_elements: None,

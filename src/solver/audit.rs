@@ -6,10 +6,11 @@
 //! letting the mean error go through all reflections.
 
 use super::error::{ErrorModel, Squares};
-use super::light::Sign;
+use super::light::{Light, Sign};
 use super::run::Solver;
-use super::shoot::evaluate;
-use crate::form_factor::{Receiver, Source};
+use super::shoot::{Shooter, evaluate};
+use super::tiling::Tiling;
+use crate::form_factor::{Receiver, Sampler, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
@@ -91,31 +92,14 @@ impl Solver<'_> {
             .zip(places.iter().zip(&known))
             .map(|(number, (place, known))| (place.receiver(&self.mesh, *known), number))
             .collect();
-        let levels = self.options.source_levels();
-        let ones = vec![Spectrum::ONE; 1 << (2 * levels)];
-        let mut gathered = vec![Power::ZERO; places.len()];
-        let mut leaving = Power::ZERO;
-        let mut factors = vec![0.0; places.len()];
-        for patch in 0..self.mesh.patches.len() {
-            let of = &self.mesh.patches[patch];
-            let unit = Source::new(of.corners(), of.normal, levels, &ones);
-            for (factor, gather) in factors
-                .iter_mut()
-                .zip(evaluate(&plain, &unit, &receivers).0)
-            {
-                *factor += f64::from(gather.irradiance.x);
-            }
-            let power = whole.unshot_power(&self.mesh, patch, Sign::Positive);
-            leaving += power;
-            if power != Power::ZERO {
-                let shooter = (patch, Sign::Positive);
-                let source = self.source_of(&whole, shooter, &fine.thresholds);
-                let arrived = evaluate(&fine, &source, &receivers).0;
-                for (sum, gather) in gathered.iter_mut().zip(arrived) {
-                    *sum += gather.irradiance.as_dvec3();
-                }
-            }
-        }
+        let (gathered, factors) = if self.is_clustered() {
+            self.second_look_at_clusters(&whole, (&fine, &plain), &receivers)
+        } else {
+            self.second_look(&whole, (&fine, &plain), &receivers)
+        };
+        let leaving: Power = (0..self.mesh.patches.len())
+            .map(|patch| whole.unshot_power(&self.mesh, patch, Sign::Positive))
+            .sum();
         let count = 3.0 * places.len() as f64;
         let mean = gathered.iter().sum::<Power>().element_sum() / count;
         let errors = || known.iter().zip(&gathered).map(|(k, g)| k.as_dvec3() - *g);
@@ -139,6 +123,64 @@ impl Solver<'_> {
             received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or_default(),
             sent_sum: self.course.sent_sum,
         })
+    }
+
+    /// At each receiver all light of `whole`, sampled finely, and the sum of all form factors, sampled as in the solve.
+    fn second_look(
+        &self,
+        whole: &Light,
+        (fine, plain): (&Sampler, &Sampler),
+        receivers: &[(Receiver, u32)],
+    ) -> (Vec<Power>, Vec<f64>) {
+        let levels = self.options.source_levels();
+        let ones = vec![Spectrum::ONE; 1 << (2 * levels)];
+        let mut gathered = vec![Power::ZERO; receivers.len()];
+        let mut factors = vec![0.0; receivers.len()];
+        for (patch, of) in self.mesh.patches.iter().enumerate() {
+            let unit = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &ones));
+            let seen = evaluate(plain, &unit, receivers).0;
+            for (factor, gather) in factors.iter_mut().zip(seen) {
+                *factor += f64::from(gather.irradiance.x);
+            }
+            if whole.unshot_power(&self.mesh, patch, Sign::Positive) != Power::ZERO {
+                let shooter = (patch, Sign::Positive);
+                let source = self.source_of(whole, shooter, &fine.thresholds);
+                let arrived = evaluate(fine, &Shooter::Patch(source), receivers).0;
+                for (sum, gather) in gathered.iter_mut().zip(arrived) {
+                    *sum += gather.irradiance.as_dvec3();
+                }
+            }
+        }
+        (gathered, factors)
+    }
+
+    /// The same of all patches at once.
+    fn second_look_at_clusters(
+        &self,
+        whole: &Light,
+        (fine, plain): (&Sampler, &Sampler),
+        receivers: &[(Receiver, u32)],
+    ) -> (Vec<Power>, Vec<f64>) {
+        let mut tiling = Tiling::new(&self.mesh);
+        let light = tiling.unshot(&self.mesh, whole, Sign::Positive);
+        let ones = vec![Spectrum::ONE; light.len()];
+        let mut look = |sampler: &Sampler, light: Vec<Spectrum>, seed: u32| {
+            tiling.clusters.radiate(light, seed);
+            let shooter = Shooter::All {
+                tiling: tiling.clone(),
+                settled: true,
+            };
+            evaluate(sampler, &shooter, receivers).0
+        };
+        let gathered = look(fine, light, 0x6175_6469)
+            .iter()
+            .map(|g| g.irradiance.as_dvec3())
+            .collect();
+        let factors = look(plain, ones, 0)
+            .iter()
+            .map(|g| f64::from(g.irradiance.x))
+            .collect();
+        (gathered, factors)
     }
 }
 

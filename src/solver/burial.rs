@@ -21,8 +21,10 @@ pub(super) fn buried(
     if backing.iter().all(|b| b.sides == Sides::Both) {
         return vec![false; count];
     }
-    let blocks: Vec<Vec<bool>> = (first..mesh.vertices.len() as u32)
-        .collect::<Vec<_>>()
+    let receiving: Vec<u32> = (first..mesh.vertices.len() as u32)
+        .filter(|v| mesh.receives(*v))
+        .collect();
+    let blocks: Vec<Vec<bool>> = receiving
         .par_chunks(256)
         .map(|block| {
             let mut dark = sees_dark(mesh, visibility, backing, block, 0..1);
@@ -40,7 +42,14 @@ pub(super) fn buried(
             dark
         })
         .collect();
-    blocks.concat()
+    let mut buried = vec![false; mesh.vertices.len()];
+    for (vertex, is_buried) in receiving.iter().zip(blocks.concat()) {
+        buried[*vertex as usize] = is_buried;
+    }
+    if first == 0 {
+        mesh.share(&mut buried, |corners| corners.iter().all(|buried| *buried));
+    }
+    buried.split_off(first as usize)
 }
 
 /// For each vertex, whether all of its rays with the given numbers end on sides that do not radiate.
@@ -55,9 +64,8 @@ fn sees_dark(
     let queries: Vec<Ray> = vertices
         .iter()
         .flat_map(|vertex| {
-            let of = &mesh.vertices[*vertex as usize];
-            let normal = mesh.patches[of.patch as usize].normal;
-            let origin = lift(of.point, normal, extent).as_vec3();
+            let (point, normal) = mesh.receiver(*vertex);
+            let origin = lift(point, normal, extent).as_vec3();
             rays.clone().map(move |ray| {
                 // Even in azimuth and height, turned at random from vertex to vertex.
                 let [s, t] = jitter(*vertex, 0x6275_7269);

@@ -5,8 +5,11 @@ use super::escape::Lost;
 use super::feelers::Feeler;
 use super::light::{Light, Sign};
 use super::observer::Phase;
+use super::shoot::Shooter;
 use super::source::source_from;
-use crate::form_factor::{DEEPEST, Gather, Source};
+use super::tiling::tile_count;
+use super::wave::Wave;
+use crate::form_factor::{DEEPEST, Gather};
 use crate::mesh::Mesh;
 use crate::radiometry::Spectrum;
 use serde::{Deserialize, Serialize};
@@ -50,16 +53,19 @@ pub(super) enum Stage {
     Gathering(Gathering),
     /// Nothing.
     Finished,
+    /// The next vertices that a wave arrives at.
+    Waving(Wave),
 }
 
 /// A shot that has arrived at the vertices there were, while the mesh is refined for it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Shot {
+    /// The patch, or [`ALL`].
     pub shooter: u32,
     pub sign: Sign,
     /// As a fraction of the emitted power.
     pub power: f64,
-    /// Unshot radiosity by cell of the deepest level, as it was before the shot.
+    /// Unshot radiosity by cell of the deepest level, or by tile, as it was before the shot.
     pub cells: Vec<Spectrum>,
     /// Elements to be tested.
     pub candidates: Vec<u32>,
@@ -68,14 +74,16 @@ pub(super) struct Shot {
     pub arrived: Vec<Gather>,
     /// Made of `cells` when it is asked for.
     #[serde(skip)]
-    pub source: Option<Source>,
+    pub made: Option<Shooter>,
 }
 
+/// All patches, as clusters.
+pub(super) const ALL: u32 = u32::MAX;
+
 impl Shot {
-    /// The source that shoots.
-    pub fn source(&mut self, mesh: &Mesh) -> Source {
-        let made = self.source.take();
-        made.unwrap_or_else(|| source_from(mesh, self.shooter as usize, &self.cells))
+    /// The patch as a source.
+    pub fn source(&self, mesh: &Mesh) -> Shooter {
+        Shooter::Patch(source_from(mesh, self.shooter as usize, &self.cells))
     }
 }
 
@@ -100,6 +108,7 @@ impl Course {
     pub(super) fn phase(&self, mesh: &Mesh) -> Phase {
         match &self.stage {
             Stage::Shooting => Phase::Shooting,
+            Stage::Waving(wave) => wave.phase(mesh),
             Stage::Refining(_) => Phase::Refining,
             Stage::Gathering(so_far) => Phase::Gathering {
                 done: so_far.next,
@@ -111,7 +120,9 @@ impl Course {
 
     /// Goes on with shooting if all was shot: the options have become stricter, or the emitters are others.
     pub fn reopen(&mut self) {
-        if matches!(self.stage, Stage::Finished | Stage::Gathering(_)) {
+        if matches!(self.stage, Stage::Finished | Stage::Gathering(_))
+            || matches!(&self.stage, Stage::Waving(wave) if wave.is_whole())
+        {
             self.stage = Stage::Shooting;
         }
         self.meshing_ended = None;
@@ -123,12 +134,17 @@ impl Course {
         let fits = match &self.stage {
             Stage::Shooting | Stage::Finished => true,
             Stage::Refining(shot) => {
-                let levels = 1..=DEEPEST;
-                levels.into_iter().any(|l| shot.cells.len() == 1 << (2 * l))
-                    && shot.shooter < patches
-                    && shot.candidates.iter().all(|e| *e < elements)
+                let mut levels = 1..=DEEPEST;
+                let fits = match shot.shooter {
+                    ALL => shot.cells.len() == tile_count(mesh),
+                    patch => patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l)),
+                };
+                fits && shot.candidates.iter().all(|e| *e < elements)
                     && shot.feelers.iter().all(|f| f.patch < patches)
                     && shot.arrived.len() == mesh.vertices.len()
+            }
+            Stage::Waving(wave) => {
+                wave.cells.len() == tile_count(mesh) && wave.arrived.len() == mesh.vertices.len()
             }
             Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
         };

@@ -1,6 +1,5 @@
 //! What leaves the scene: cosine-distributed rays from the shooter that meet nothing, or a side that does not radiate.
 
-use crate::form_factor::Source;
 use crate::geometry::{cosine_direction, jitter, lift};
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::Sides;
@@ -54,24 +53,21 @@ impl Mul<f64> for Lost {
     }
 }
 
-/// The part of a shot's power that is lost, estimated with `count` rays.
-/// Points that `is_open` denies give nothing: what is buried has received nothing either.
+/// The part of a shot's power that is lost, estimated with `count` rays. Points of patches that `is_open` denies give nothing:
+/// what is buried has received nothing either.
 pub(super) fn escaped(
-    source: &Source,
+    draws: Vec<Draw>,
     visibility: &dyn Visibility,
     backing: &[Backing],
-    is_open: impl Fn(DVec3) -> bool,
+    is_open: impl Fn(u32, DVec3) -> bool,
     extent: f64,
-    (count, seed): (usize, u32),
 ) -> Lost {
-    let draws: Vec<Draw> = draw(source, count, seed)
-        .into_iter()
-        .filter(|draw| is_open(draw.point))
-        .collect();
+    let mut draws = draws;
+    draws.retain(|draw| is_open(draw.patch, draw.point));
     draws
         .par_chunks(1024)
         .map(|chunk| {
-            let rays: Vec<Ray> = chunk.iter().map(|d| ray(source, d, extent)).collect();
+            let rays: Vec<Ray> = chunk.iter().map(|d| ray(d, extent)).collect();
             let mut hits = Vec::new();
             visibility.nearest(&rays, &mut hits);
             let mut lost = Lost::default();
@@ -94,31 +90,45 @@ pub(super) fn escaped(
         })
 }
 
-/// A point of the source, a direction on the unit square, and the power that goes there.
-struct Draw {
+/// A point of a shooter, a direction on the unit square, and the power that goes there.
+pub(super) struct Draw {
+    patch: u32,
     point: DVec3,
+    normal: DVec3,
     direction: [f64; 2],
     power: Power,
 }
 
-/// Points in proportion to radiosity, by systematic sampling over the cells.
-fn draw(source: &Source, count: usize, seed: u32) -> Vec<Draw> {
-    let total: f64 = source
-        .finest()
-        .map(|(_, p)| f64::from(p.element_sum()))
-        .sum();
+/// A part of a shooter that draws are taken from: its patch, its normal, its power, and its point at (s, t) of the unit square.
+pub(super) struct Part<P> {
+    pub patch: u32,
+    pub normal: DVec3,
+    pub power: Spectrum,
+    pub at: P,
+}
+
+/// `count` points in proportion to power, by systematic sampling over the parts.
+pub(super) fn draw<P: Fn(f64, f64) -> DVec3>(
+    parts: impl Iterator<Item = Part<P>> + Clone,
+    count: usize,
+    seed: u32,
+) -> Vec<Draw> {
+    let sum_of = |part: &Part<P>| f64::from(part.power.element_sum());
+    let total: f64 = parts.clone().map(|part| sum_of(&part)).sum();
     let step = total / count as f64;
     let mut draws = Vec::with_capacity(count);
     let (mut passed, mut next) = (0.0, 0.5 * step);
-    for (cell, power) in source.finest() {
-        let sum = f64::from(power.element_sum());
+    for part in parts {
+        let sum = sum_of(&part);
         passed += sum;
         while next < passed && draws.len() < count {
             let number = draws.len() as u32;
             let [s, t] = jitter(seed, 2 * number);
-            let share: Spectrum = power / sum as f32;
+            let share: Spectrum = part.power / sum as f32;
             draws.push(Draw {
-                point: cell.at(s, t),
+                patch: part.patch,
+                point: (part.at)(s, t),
+                normal: part.normal,
                 direction: spread(number, seed),
                 power: share.as_dvec3() * step,
             });
@@ -138,11 +148,10 @@ fn spread(number: u32, seed: u32) -> [f64; 2] {
     ]
 }
 
-fn ray(source: &Source, draw: &Draw, extent: f64) -> Ray {
-    let normal = source.normal();
-    let direction = cosine_direction(normal, draw.direction);
+fn ray(draw: &Draw, extent: f64) -> Ray {
+    let direction = cosine_direction(draw.normal, draw.direction);
     Ray {
-        origin: lift(draw.point, normal, extent).as_vec3(),
+        origin: lift(draw.point, draw.normal, extent).as_vec3(),
         direction: direction.as_vec3(),
     }
 }

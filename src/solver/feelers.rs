@@ -7,7 +7,7 @@
 
 use super::escape::{Backing, is_dark};
 use super::light::Light;
-use super::shoot::{Beam, evaluate};
+use super::shoot::{Beam, Shooter, evaluate};
 use crate::form_factor::{Receiver, Source};
 use crate::geometry::polygon;
 use crate::mesh::{Mesh, Patch};
@@ -44,7 +44,10 @@ pub(super) fn feelers(
     beam: Beam,
     reached: &[bool],
 ) -> (Vec<Feeler>, u64) {
-    let mut feelers = cast(mesh, beam.source, beam.sampler.visibility, backing);
+    let Shooter::Patch(source) = beam.shooter else {
+        return (Vec::new(), 0);
+    };
+    let mut feelers = cast(mesh, source, beam.sampler.visibility, backing);
     feelers.retain(|f| {
         let leaf = mesh.leaf_at(f.patch, f.at.0, f.at.1);
         reached[f.patch as usize] && mesh.may_split(leaf) && f.width < mesh.longest_side(leaf)
@@ -63,7 +66,7 @@ pub(super) fn feelers(
             (receiver, !number)
         })
         .collect();
-    let (gathers, rays) = evaluate(beam.sampler, beam.source, &points);
+    let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &points);
     for (feeler, gather) in feelers.iter_mut().zip(gathers) {
         feeler.irradiance = gather.irradiance * beam.sign.factor();
     }

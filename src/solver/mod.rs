@@ -22,6 +22,8 @@ mod run;
 mod shoot;
 mod shot;
 mod source;
+mod tiling;
+mod wave;
 
 pub use audit::{Audit, Span};
 pub use course::{Course, MeshingEnd};

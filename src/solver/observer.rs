@@ -10,9 +10,9 @@ pub enum Phase {
     Shooting,
     /// Splitting elements after a shot.
     Refining,
-    /// All light once more, patch by patch.
+    /// All light once more, patch by patch or, from clusters, vertex by vertex.
     Gathering {
-        /// Patches whose light is in.
+        /// Patches whose light is in, or vertices that have it.
         done: u32,
         /// Patches in all.
         of: u32,

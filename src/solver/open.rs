@@ -4,7 +4,7 @@ use super::audit::FINER;
 use super::escape::{Backing, is_dark};
 use super::light::{Light, Sign};
 use super::options::Options;
-use super::shoot::evaluate;
+use super::shoot::{Shooter, evaluate};
 use super::source::{cells_of, source_from};
 use crate::form_factor::{Receiver, Sampler, SourceThresholds, ToleranceScale};
 use crate::geometry::{cosine_direction, jitter};
@@ -149,7 +149,7 @@ impl<'a> OpenLight<'a> {
                 &sampler.thresholds,
             );
             let source = source_from(self.mesh, patch, &cells);
-            let (gathers, _) = evaluate(&sampler, &source, receivers);
+            let (gathers, _) = evaluate(&sampler, &Shooter::Patch(source), receivers);
             for (sum, gather) in sums.iter_mut().zip(gathers) {
                 *sum += gather.irradiance.as_dvec3();
             }

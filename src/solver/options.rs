@@ -82,6 +82,9 @@ pub struct Options {
     pub regather: bool,
     /// Points at which the error is estimated at the end; 0 for no estimate.
     pub audit_points: usize,
+    /// With more patches than this, all shoot at once as clusters instead of one after the other.
+    #[serde(default = "cluster_from")]
+    pub cluster_from: usize,
     /// At most this many shots.
     pub max_shots: Option<u64>,
     /// At most this long.
@@ -92,6 +95,11 @@ pub struct Options {
     /// Refinement ends when the process, with all results written, would need about this much memory, bytes.
     #[serde(default)]
     pub memory_limit: Option<u64>,
+}
+
+/// [`Options::cluster_from`] of all presets.
+const fn cluster_from() -> usize {
+    2000
 }
 
 /// Named sets of options.
@@ -133,6 +141,7 @@ impl Preset {
             tolerance: 0.002,
             regather: true,
             audit_points: 256,
+            cluster_from: cluster_from(),
             max_shots: None,
             time_limit: None,
             max_elements: None,

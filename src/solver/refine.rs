@@ -5,7 +5,7 @@ use super::escape::Backing;
 use super::feelers::Feeler;
 use super::light::Light;
 use super::options::{Options, Quantity};
-use super::shoot::{Beam, evaluate, shoot_at};
+use super::shoot::{Beam, Shooter, evaluate, shoot_at};
 use crate::form_factor::{Gather, Receiver};
 use crate::mesh::{Lattice, Mesh, NONE};
 use crate::radiometry::Spectrum;
@@ -124,6 +124,11 @@ impl Refinement<'_> {
                 }
             }
         }
+        if let Shooter::All { .. } = self.beam.shooter {
+            // The index is of all light together: as the middles of sides would cost as much as splitting does, tests 1 and 2 have
+            // to find what is there.
+            return failed;
+        }
         let middles = self.middles(&open);
         failed.extend(
             open.iter()
@@ -203,7 +208,7 @@ impl Refinement<'_> {
                 }
             }
         }
-        let (gathers, rays) = evaluate(self.beam.sampler, self.beam.source, &points);
+        let (gathers, rays) = evaluate(self.beam.sampler, self.beam.shooter, &points);
         self.rays += rays;
         keys.into_iter()
             .zip(gathers.iter().map(|g| g.visibility))

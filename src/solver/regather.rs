@@ -9,7 +9,7 @@ use super::course::{Gathering, Stage};
 use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
-use super::shoot::Beam;
+use super::shoot::{Beam, Shooter};
 use crate::radiometry::{Power, Spectrum};
 
 impl Solver<'_> {
@@ -37,7 +37,13 @@ impl Solver<'_> {
         };
         let next = (so_far.next..self.mesh.patches.len() as u32).find(|p| power(p) > 0.0);
         let Some(patch) = next else {
-            return self.take_over(so_far, whole);
+            let Gathering {
+                irradiance,
+                lost,
+                sums,
+                ..
+            } = so_far;
+            return self.take_over(irradiance, &whole, lost, sums);
         };
         let sent = power(&patch);
         self.gather_from(patch as usize, sent, &whole, &mut so_far);
@@ -50,12 +56,14 @@ impl Solver<'_> {
         let power = sent / self.emitted().element_sum();
         let sampler = self.sampler();
         let source = self.source_of(whole, (patch, Sign::Positive), &sampler.thresholds);
+        let reached = self.reached(&source);
+        let shooter = Shooter::Patch(source);
         let beam = Beam {
             sampler: &sampler,
-            source: &source,
+            shooter: &shooter,
             sign: Sign::Positive,
         };
-        let arrived = self.arrivals(beam, &self.reached(&source));
+        let arrived = self.arrivals(beam, &reached);
         let mut received = Power::ZERO;
         for (vertex, gather) in arrived.iter().enumerate() {
             into.irradiance[vertex] += gather.irradiance;
@@ -63,7 +71,7 @@ impl Solver<'_> {
         }
         let lost = self.escape(
             patch,
-            &source,
+            &shooter,
             power,
             self.course.shots as u32 + patch as u32,
         );
@@ -74,16 +82,23 @@ impl Solver<'_> {
         }
     }
 
-    fn take_over(&mut self, gathered: Gathering, whole: Light) {
-        self.light.irradiance = gathered.irradiance;
+    /// What was gathered from `whole` replaces what there was.
+    pub(super) fn take_over(
+        &mut self,
+        irradiance: Vec<Spectrum>,
+        whole: &Light,
+        lost: Lost,
+        sums: Vec<(f64, f64)>,
+    ) {
+        self.light.irradiance = irradiance;
         for ((unshot, now), sent) in
-            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(whole.unshot)
+            (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(&whole.unshot)
         {
-            *unshot = *now - sent;
+            *unshot = *now - *sent;
         }
         self.light.exitance_unshot.fill(Spectrum::ZERO);
-        self.course.lost = gathered.lost;
-        self.course.sent_sum = Span::of(gathered.sums.into_iter());
+        self.course.lost = lost;
+        self.course.sent_sum = Span::of(sums.into_iter());
         self.course.stage = Stage::Finished;
     }
 
@@ -98,7 +113,7 @@ impl Solver<'_> {
 
     /// By how much reflected light grows until what is unshot has gone through all its reflections, were these like those of the
     /// light that has been shot: of a power M emitted, R is reflected so far and p of it unshot; then R∞ = R + p R∞ / M.
-    fn ambient(&self) -> Spectrum {
+    pub(super) fn ambient(&self) -> Spectrum {
         let emitted = self.emitted().max(Power::splat(f64::MIN_POSITIVE));
         (Power::ONE - (self.unshot() / emitted).min(Power::splat(0.5)))
             .recip()

@@ -9,6 +9,8 @@ use super::light::{Light, Sign};
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
+use super::shoot::Shooter;
+use super::tiling::Tiling;
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
@@ -26,6 +28,10 @@ pub struct Solver<'a> {
     pub(super) visibility: &'a dyn Visibility,
     pub(super) options: Options,
     pub(super) backing: Vec<Backing>,
+    /// The tiles of a scene of many patches, while they do not shoot.
+    pub(super) tiling: Option<Tiling>,
+    /// … and while they do.
+    pub(super) radiated: Option<Shooter>,
     /// Area of one square of the frame's unit, m².
     pub(super) square_metres: f64,
     pub(super) reference: f64,
@@ -52,6 +58,9 @@ impl<'a> Solver<'a> {
         visibility: &'a dyn Visibility,
         options: Options,
     ) -> Self {
+        if mesh.patches.len() > options.cluster_from {
+            mesh.weld();
+        }
         let backing = backing(scene, &mesh);
         mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
         mesh.integrate();
@@ -63,11 +72,14 @@ impl<'a> Solver<'a> {
     /// Takes up a solve of `scene` where an [`Outcome`] has left it; `spent` is what counts against the time limit already.
     pub fn resume(
         scene: &Scene,
-        (mesh, light, course): (Mesh, Light, Course),
+        (mut mesh, light, course): (Mesh, Light, Course),
         visibility: &'a dyn Visibility,
         options: Options,
         spent: Duration,
     ) -> Self {
+        if mesh.patches.len() > options.cluster_from && !mesh.is_welded() {
+            mesh.weld();
+        }
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
         let emitted: f64 = mesh
             .patches
@@ -76,6 +88,8 @@ impl<'a> Solver<'a> {
             .sum();
         Self {
             backing: backing(scene, &mesh),
+            tiling: None,
+            radiated: None,
             square_metres: (scene.metres_per_unit / mesh.frame.scale()).powi(2),
             reference: if area > 0.0 { emitted / area } else { 0.0 },
             mesh,
@@ -103,7 +117,7 @@ impl<'a> Solver<'a> {
         self.outcome(StopReason::Interrupted, None)
     }
 
-    fn outcome(self, stop_reason: StopReason, audit: Option<Audit>) -> Outcome {
+    fn outcome(mut self, stop_reason: StopReason, audit: Option<Audit>) -> Outcome {
         let mut lost = self.course.lost;
         lost += self.escaping();
         let ledger = Ledger::balance(&self.mesh, &self.light, &lost, self.square_metres);
@@ -138,6 +152,7 @@ impl<'a> Solver<'a> {
                         return reason;
                     }
                 }
+                Stage::Waving(wave) => self.wave(wave),
                 Stage::Refining(shot) => self.refine(shot),
                 Stage::Gathering(so_far) => self.gather(so_far),
                 Stage::Finished => {
@@ -154,16 +169,20 @@ impl<'a> Solver<'a> {
         let emitted = self.emitted().element_sum();
         let unshot: Power = powers.iter().sum();
         if unshot.element_sum() <= self.options.tolerance * emitted {
-            self.course.stage = if self.options.regather {
-                Stage::Gathering(self.gathering())
-            } else {
-                Stage::Finished
-            };
+            match (self.options.regather, self.is_clustered()) {
+                (false, _) => self.course.stage = Stage::Finished,
+                (true, false) => self.course.stage = Stage::Gathering(self.gathering()),
+                (true, true) => self.begin_gathering(),
+            }
             return None;
         }
         let shots = self.course.shots;
         if self.options.max_shots.is_some_and(|most| shots >= most) {
             return Some(StopReason::MaxShots);
+        }
+        if self.is_clustered() {
+            self.begin_wave(&powers);
+            return None;
         }
         let strongest = select(&powers);
         let power = powers[strongest].element_sum() / emitted;

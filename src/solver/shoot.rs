@@ -1,36 +1,57 @@
-//! One source evaluated at many vertices.
+//! What shoots, evaluated at many vertices.
 
 use super::light::{Light, Sign};
-use crate::form_factor::{Gather, Receiver, Sampler, Scratch, Source};
+use super::tiling::Tiling;
+use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
 
 /// Vertices that are evaluated together: enough to fill packets on every level of the source, few enough to share out.
 const BLOCK: usize = 32;
 
-/// A source as it is sampled, and whether it adds light or takes some away.
+/// What shoots.
+#[derive(Debug, Clone)]
+pub(super) enum Shooter {
+    /// One patch.
+    Patch(Source),
+    /// All patches as clusters; see [`Sampler::gather_clusters`] for `settled`.
+    All { tiling: Tiling, settled: bool },
+}
+
+/// A shooter as it is sampled, and whether it adds light or takes some away.
 #[derive(Clone, Copy)]
 pub(super) struct Beam<'a> {
     pub sampler: &'a Sampler<'a>,
-    pub source: &'a Source,
+    pub shooter: &'a Shooter,
     pub sign: Sign,
 }
 
-/// Evaluates `source` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
+/// Evaluates `shooter` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
 /// blocks depend on the list alone and no result on another.
 pub(super) fn evaluate(
     sampler: &Sampler,
-    source: &Source,
+    shooter: &Shooter,
     points: &[(Receiver, u32)],
 ) -> (Vec<Gather>, u64) {
-    let blocks: Vec<(Vec<Gather>, u64)> = points
-        .par_chunks(BLOCK)
-        .map_init(Scratch::default, |scratch, block| {
-            let mut gathers = Vec::with_capacity(block.len());
-            let rays = sampler.gather(source, block, scratch, &mut gathers);
-            (gathers, rays)
-        })
-        .collect();
+    let chunks = points.par_chunks(BLOCK);
+    let blocks: Vec<(Vec<Gather>, u64)> = match shooter {
+        Shooter::Patch(source) => chunks
+            .map_init(Scratch::default, |scratch, block| {
+                let mut gathers = Vec::with_capacity(block.len());
+                let rays = sampler.gather(source, block, scratch, &mut gathers);
+                (gathers, rays)
+            })
+            .collect(),
+        Shooter::All { tiling, settled } => chunks
+            .map_init(ClusterScratch::default, |scratch, block| {
+                let mut gathers = Vec::with_capacity(block.len());
+                let clusters = &tiling.clusters;
+                let rays =
+                    sampler.gather_clusters(clusters, block, *settled, scratch, &mut gathers);
+                (gathers, rays)
+            })
+            .collect(),
+    };
     let rays = blocks.iter().map(|(_, rays)| rays).sum();
     (
         blocks
@@ -51,10 +72,12 @@ pub(super) fn shoot_at(
 ) -> u64 {
     let points: Vec<_> = vertices
         .iter()
+        .filter(|v| mesh.receives(**v))
         .map(|v| receiver_at(mesh, light, *v))
         .collect();
-    let (gathers, rays) = evaluate(beam.sampler, beam.source, &points);
-    for (vertex, mut gather) in vertices.iter().zip(gathers) {
+    let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &points);
+    let receiving = vertices.iter().filter(|v| mesh.receives(**v));
+    for (vertex, mut gather) in receiving.zip(gathers) {
         gather.irradiance *= beam.sign.factor();
         arrived[*vertex as usize] = gather;
     }
@@ -63,12 +86,11 @@ pub(super) fn shoot_at(
 
 /// A vertex as a receiver.
 fn receiver_at(mesh: &Mesh, light: &Light, vertex: u32) -> (Receiver, u32) {
-    let of = &mesh.vertices[vertex as usize];
-    let normal = mesh.patches[of.patch as usize].normal;
+    let (point, normal) = mesh.receiver(vertex);
     let irradiance = light.irradiance[vertex as usize].max_element();
     (
         Receiver {
-            point: of.point,
+            point,
             normal,
             irradiance,
         },

@@ -1,14 +1,14 @@
 //! One shot: it arrives at the vertices, the mesh is refined for it pass by pass, what it loses is measured.
 
-use super::course::{Shot, Stage};
-use super::escape::{Lost, escaped};
+use super::course::{ALL, Shot, Stage};
+use super::escape::{Lost, Part, draw, escaped};
 use super::feelers::feelers;
 use super::light::Sign;
 use super::refine::Refinement;
 use super::run::Solver;
-use super::shoot::{Beam, faces, shoot_at};
-use super::source::cells_of;
-use crate::form_factor::{Gather, Sampler, Source, SourceThresholds, ToleranceScale};
+use super::shoot::{Beam, Shooter, faces, shoot_at};
+use super::source::{cells_of, source_from};
+use crate::form_factor::{Cell, Gather, Sampler, Source, SourceThresholds, ToleranceScale};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
@@ -26,16 +26,17 @@ impl<'a> Solver<'a> {
             candidates: Vec::new(),
             feelers: Vec::new(),
             arrived: Vec::new(),
-            source: None,
+            made: None,
         };
-        let source = shot.source(&self.mesh);
+        let source = source_from(&self.mesh, shooter, &shot.cells);
+        let reached = self.reached(&source);
+        let shooting = Shooter::Patch(source);
         let beam = Beam {
             sampler: &sampler,
-            source: &source,
+            shooter: &shooting,
             sign,
         };
         self.light.take(&self.mesh, shooter, sign);
-        let reached = self.reached(&source);
         shot.arrived = self.arrivals(beam, &reached);
         for (vertex, gather) in shot.arrived.iter().enumerate() {
             self.light.irradiance[vertex] += gather.irradiance;
@@ -49,29 +50,34 @@ impl<'a> Solver<'a> {
             let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
             self.course.rays += rays;
             shot.feelers = found;
-            shot.source = Some(source);
+            shot.made = Some(shooting);
             self.course.stage = Stage::Refining(shot);
         } else {
-            self.end_shot(&shot, &source);
+            shot.made = Some(shooting);
+            self.end_shot(shot);
         }
     }
 
     /// One pass of refinement.
     pub(super) fn refine(&mut self, mut shot: Shot) {
-        let source = shot.source(&self.mesh);
+        let shooter = match shot.made.take() {
+            Some(made) => made,
+            None => self.made(&shot),
+        };
         if let Some(end) = self.meshing_end() {
             self.course.meshing_ended = Some(end);
             shot.candidates.clear();
         }
         if shot.candidates.is_empty() {
             self.course.meshing_shots += 1;
-            return self.end_shot(&shot, &source);
+            shot.made = Some(shooter);
+            return self.end_shot(shot);
         }
         let sampler = self.sampler();
         let mut refinement = Refinement {
             beam: Beam {
                 sampler: &sampler,
-                source: &source,
+                shooter: &shooter,
                 sign: shot.sign,
             },
             room: self.room(),
@@ -86,27 +92,44 @@ impl<'a> Solver<'a> {
         shot.candidates = refinement.pass(&shot.candidates);
         self.course.rays += refinement.rays;
         self.mesh.integrate();
-        shot.source = Some(source);
+        shot.made = Some(shooter);
         self.course.stage = Stage::Refining(shot);
     }
 
-    fn end_shot(&mut self, shot: &Shot, source: &Source) {
-        self.course.lost += self.escape_of(shot, source);
+    /// What shoots, made anew from what is kept of it.
+    fn made(&mut self, shot: &Shot) -> Shooter {
+        match shot.shooter {
+            ALL => self.radiating(&shot.cells, false),
+            _ => shot.source(&self.mesh),
+        }
+    }
+
+    pub(super) fn end_shot(&mut self, mut shot: Shot) {
+        if let Some(shooter) = shot.made.take() {
+            self.course.lost += self.escape_of(&shot, &shooter);
+            self.keep_tiling(shooter);
+        }
         self.course.shots += 1;
     }
 
     /// What escapes of the shot that is under way.
-    pub(super) fn escaping(&self) -> Lost {
-        match &self.course.stage {
-            Stage::Refining(shot) => {
-                let source = shot.clone().source(&self.mesh);
-                self.escape_of(shot, &source)
+    pub(super) fn escaping(&mut self) -> Lost {
+        let mut shot = match std::mem::take(&mut self.course.stage) {
+            Stage::Refining(shot) => shot,
+            other => {
+                self.course.stage = other;
+                return Lost::default();
             }
-            _ => Lost::default(),
-        }
+        };
+        let shooter = shot.made.take();
+        let shooter = shooter.unwrap_or_else(|| self.made(&shot));
+        let lost = self.escape_of(&shot, &shooter);
+        shot.made = Some(shooter);
+        self.course.stage = Stage::Refining(shot);
+        lost
     }
 
-    fn escape_of(&self, shot: &Shot, source: &Source) -> Lost {
+    fn escape_of(&self, shot: &Shot, source: &Shooter) -> Lost {
         let seed = self.course.shots as u32;
         let lost = self.escape(shot.shooter as usize, source, shot.power, seed);
         lost * f64::from(shot.sign.factor())
@@ -147,20 +170,29 @@ impl<'a> Solver<'a> {
     }
 
     /// What of a source's power, a fraction `power` of the emitted, leaves the scene.
-    pub(super) fn escape(&self, shooter: usize, source: &Source, power: f64, seed: u32) -> Lost {
+    pub(super) fn escape(&self, shooter: usize, source: &Shooter, power: f64, seed: u32) -> Lost {
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
         // An emitter emits wherever it is.
-        let emits = self.mesh.patches[shooter].exitance != Spectrum::ZERO;
-        let is_open = |point| emits || self.is_open(shooter, point);
-        escaped(
-            source,
-            self.visibility,
-            &self.backing,
-            is_open,
-            self.mesh.frame.extent(),
-            (rays, seed),
-        )
+        let emits = |patch: u32| self.mesh.patches[patch as usize].exitance != Spectrum::ZERO;
+        let is_open = |patch, point| emits(patch) || self.is_open(patch as usize, point);
+        let draws = match source {
+            Shooter::Patch(source) => {
+                let part = |(cell, power): (&Cell, Spectrum)| {
+                    let cell = *cell;
+                    Part {
+                        patch: shooter as u32,
+                        normal: source.normal(),
+                        power,
+                        at: move |s, t| cell.at(s, t),
+                    }
+                };
+                draw(source.finest().map(part), rays, seed)
+            }
+            Shooter::All { tiling, .. } => draw(tiling.parts(), rays, seed),
+        };
+        let extent = self.mesh.frame.extent();
+        escaped(draws, self.visibility, &self.backing, is_open, extent)
     }
 
     /// Whether the nearest vertex to a point of a patch is open.

@@ -29,7 +29,7 @@ pub(super) fn source_from(mesh: &Mesh, patch: usize, cells: &[Spectrum]) -> Sour
 }
 
 /// A triangle or parallelogram of coordinates on a patch; a triangle repeats its first corner.
-type Quad = [[f64; 2]; 4];
+pub(super) type Quad = [[f64; 2]; 4];
 
 /// What `patch` shoots of one sign: unshot radiosity by cell of the deepest level of its [`Source`]. The total power is exactly that
 /// of the interpolant, buried parts included: rays find out that nothing leaves those.
@@ -40,28 +40,49 @@ pub(super) fn cells_of(
     options: &Options,
     thresholds: &SourceThresholds,
 ) -> Vec<Spectrum> {
-    let of = &mesh.patches[patch];
-    let radiosity = |v: u32| light.unshot_radiosity(mesh, v, sign);
-    let full = |v: &u32| radiosity(*v).as_dvec3() * mesh.full_weights[*v as usize];
-    let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
-    let peak = of
+    let peak = mesh.patches[patch]
         .vertices
         .iter()
-        .map(|v| radiosity(*v).max_element())
+        .map(|v| light.unshot_radiosity(mesh, *v, sign).max_element())
         .fold(0.0, f32::max);
     // No form factor exceeds 1, so a source this dim is never split where thresholds do not follow the local light.
     let unit = thresholds.scale.reference;
     let fixed = !thresholds.raw && thresholds.scale.local_share == 0.0;
     let dim = fixed && f64::from(peak) <= unit * thresholds.difference.min(thresholds.estimate);
     let levels = if dim { 1 } else { options.source_levels() };
-    if options.shooting == Shooting::Mean || light.is_own(mesh, patch, sign) {
+    cells_on(mesh, light, (patch, sign), levels, options.shooting)
+}
+
+/// The same on a given level; on level 0 the mean of the patch.
+pub(super) fn cells_on(
+    mesh: &Mesh,
+    light: &Light,
+    (patch, sign): (usize, Sign),
+    levels: u32,
+    shooting: Shooting,
+) -> Vec<Spectrum> {
+    let of = &mesh.patches[patch];
+    let radiosity = |v: u32| light.unshot_radiosity(mesh, v, sign);
+    let full = |v: &u32| radiosity(*v).as_dvec3() * mesh.full_weights[*v as usize];
+    let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
+    if levels == 0 || shooting == Shooting::Mean || light.is_own(mesh, patch, sign) {
         return vec![mean.as_vec3(); 1 << (2 * levels)];
     }
     let mut cells = interpolated_cells(mesh, patch, levels, &radiosity);
     let shot: Power = weighted_mean(mesh, patch, levels, &cells);
-    let correction = (mean / shot.max(Power::splat(f64::MIN_POSITIVE))).as_vec3();
-    cells.iter_mut().for_each(|cell| *cell *= correction);
+    // Where the cells missed nearly all of it, all have the mean.
+    let missed = shot.cmple(mean * 1e-3);
+    let correction = Power::select(missed, Power::ZERO, mean / shot).as_vec3();
+    let instead = Power::select(missed, mean, Power::ZERO).as_vec3();
     cells
+        .iter_mut()
+        .for_each(|cell| *cell = *cell * correction + instead);
+    cells
+}
+
+/// The cells of a level, each by its three or four corners in the coordinates of the patch.
+pub(super) fn cells_at(triangle: bool, levels: u32) -> Vec<Quad> {
+    subdivide(vec![root(triangle)], triangle, levels)
 }
 
 /// Mean unshot radiosity of each cell of the deepest level, in the pyramid's order.
@@ -72,7 +93,7 @@ fn interpolated_cells(
     radiosity: &(impl Fn(u32) -> Spectrum + Sync),
 ) -> Vec<Spectrum> {
     let triangle = mesh.patches[patch].is_triangle();
-    let cells = subdivide(vec![root(triangle)], triangle, levels);
+    let cells = cells_at(triangle, levels);
     cells
         .par_iter()
         .with_min_len(64)

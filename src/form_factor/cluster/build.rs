@@ -1,0 +1,151 @@
+//! Grouping tiles: first by the way they face, then in halves of space.
+
+use super::{Children, Clusters, Node, Sends, Tile};
+use crate::geometry::SURFACE_OFFSET;
+use crate::radiometry::Spectrum;
+use glam::Vec3;
+
+/// Tiles of a leaf.
+const BUCKET: usize = 4;
+
+/// Nodes deeper than this are split into equal numbers, so that no arrangement of tiles makes a deep tree.
+const DEEPEST_IN_SPACE: u32 = 40;
+
+impl Clusters {
+    /// The tree over `tiles`, in a scene of the given extent; nothing radiates yet.
+    pub fn new(tiles: Vec<Tile>, extent: f64) -> Self {
+        let mut order: Vec<u32> = (0..tiles.len() as u32).collect();
+        order.sort_by_key(|tile| face(tiles[*tile as usize].normal));
+        let mut builder = Builder {
+            tiles: &tiles,
+            centres: tiles.iter().map(Tile::centre).collect(),
+            nodes: Vec::with_capacity(tiles.len()),
+        };
+        let mut roots = Vec::new();
+        let mut first = 0;
+        let groups = order.chunk_by_mut(|a, b| {
+            face(tiles[*a as usize].normal) == face(tiles[*b as usize].normal)
+        });
+        for group in groups {
+            roots.push(builder.nodes.len() as u32);
+            builder.add(group, first, 0);
+            first += group.len() as u32;
+        }
+        let nodes = builder.nodes;
+        Self {
+            radiosity: vec![Spectrum::ZERO; tiles.len()],
+            tiles,
+            nodes,
+            roots,
+            order,
+            offset: (SURFACE_OFFSET * extent) as f32,
+        }
+    }
+}
+
+/// The face of the cube that a normal meets. No two normals that meet the same are more than a right angle apart by much, so that
+/// the vector areas of a cluster never cancel.
+fn face(normal: Vec3) -> usize {
+    let size = normal.abs();
+    let axis = if size.x >= size.y.max(size.z) {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    2 * axis + usize::from(normal[axis] < 0.0)
+}
+
+struct Builder<'a> {
+    tiles: &'a [Tile],
+    centres: Vec<Vec3>,
+    nodes: Vec<Node>,
+}
+
+impl Builder<'_> {
+    /// Adds the node over `group`, which begins at `first` in the order of the leaves, and all below it.
+    fn add(&mut self, group: &mut [u32], first: u32, depth: u32) {
+        let number = self.nodes.len();
+        let node = self.node(group, first);
+        self.nodes.push(node);
+        if group.len() > BUCKET {
+            let middle = self.halve(group, depth);
+            let (left, right) = group.split_at_mut(middle);
+            self.add(left, first, depth + 1);
+            self.nodes[number].children = Children::Two(self.nodes.len() as u32);
+            self.add(right, first + middle as u32, depth + 1);
+        }
+    }
+
+    fn node(&self, group: &[u32], first: u32) -> Node {
+        let of = |tile: &u32| &self.tiles[*tile as usize];
+        let areas: f32 = group.iter().map(|t| of(t).area()).sum();
+        let weighted = |t: &u32| self.centres[*t as usize] * of(t).area();
+        let centre = group.iter().map(weighted).sum::<Vec3>() / areas.max(f32::MIN_POSITIVE);
+        let far = |t: &u32| {
+            let corners = of(t).corners.iter();
+            corners
+                .map(|c| c.distance_squared(centre))
+                .fold(0.0, f32::max)
+        };
+        let vector_area: Vec3 = group.iter().map(|t| of(t).normal * of(t).area()).sum();
+        let axis = vector_area.normalize_or(of(&group[0]).normal);
+        let aside = |t: &u32| {
+            let corners = of(t).corners.iter();
+            corners
+                .map(|c| (*c - centre).dot(axis).abs())
+                .fold(0.0, f32::max)
+        };
+        let spread = |t: &u32| {
+            let (tile, own) = (of(t), self.centres[*t as usize]);
+            let corners = tile.corners[..tile.corner_count()].iter();
+            // About its own centre a triangle or parallelogram has a twelfth of what its corners have.
+            let inside = corners.map(|c| c.distance_squared(own)).sum::<f32>() / 12.0;
+            tile.area() * (inside + own.distance_squared(centre))
+        };
+        // The sine from the normals themselves: from the cosine it would be lost in rounding where they are all but parallel.
+        let sine_of = |t: &u32| of(t).normal.cross(axis).length();
+        let cosine = group
+            .iter()
+            .map(|t| of(t).normal.dot(axis))
+            .fold(1.0, f32::min);
+        let sine = group.iter().map(sine_of).fold(0.0, f32::max);
+        Node {
+            centre,
+            radius: group.iter().map(far).fold(0.0, f32::max).sqrt(),
+            cone: (cosine, if cosine > 0.0 { sine } else { 1.0 }),
+            axis,
+            thickness: group.iter().map(aside).fold(0.0, f32::max),
+            area: vector_area.length(),
+            variance: 0.5 * group.iter().map(spread).sum::<f32>() / areas.max(f32::MIN_POSITIVE),
+            children: Children::Tiles {
+                first,
+                count: group.len() as u32,
+            },
+            sends: Sends::default(),
+        }
+    }
+
+    /// Sorts a group into two halves of the box around its centres; gives where the second begins.
+    fn halve(&self, group: &mut [u32], depth: u32) -> usize {
+        let centre = |tile: &u32| self.centres[*tile as usize];
+        let (low, high) = group
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), tile| {
+                (low.min(centre(tile)), high.max(centre(tile)))
+            });
+        let axis = (high - low).max_position();
+        let middle = 0.5 * (low[axis] + high[axis]);
+        if depth < DEEPEST_IN_SPACE && low[axis] < middle {
+            // Stable, so that the tree is the same on every machine.
+            group.sort_by_key(|tile| centre(tile)[axis] >= middle);
+            let lower = group.partition_point(|tile| centre(tile)[axis] < middle);
+            if lower > 0 && lower < group.len() {
+                return lower;
+            }
+        }
+        group.sort_by(|a, b| centre(a)[axis].total_cmp(&centre(b)[axis]));
+        group.len() / 2
+    }
+}

@@ -1,0 +1,380 @@
+//! What a block of points receives from all clusters: for each point a cut through the tree, one ray a cluster.
+
+use super::{Children, Clusters, Node, Sends};
+use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
+use crate::form_factor::partition::Limits;
+use crate::form_factor::source::{Cell, SourceShape};
+use crate::form_factor::{Formula, Gather, Sampler};
+use crate::geometry::{jitter, lift};
+use crate::radiometry::Spectrum;
+use crate::visibility::{Fans, MAX_FAN};
+use glam::{DVec3, Vec3};
+use std::f32::consts::PI;
+
+/// Clusters and tiles that one point may gather from before its thresholds are doubled.
+const MOST: usize = 2048;
+
+/// Light that is known to be there counts at least this part of what would be there without occlusion: where it is dark, thresholds
+/// need not follow the light to nothing.
+const LEAST_KNOWN: f32 = 0.02;
+
+/// A cluster that looks larger than this, radius over distance, is not taken whole for the first guess of the light at a point.
+const GUESS: f32 = 0.5;
+
+/// Rays along each side of a tile that gives a point much.
+const MOST_RAYS: u32 = 4;
+
+/// What a point gets from a cluster or tile, if all of its rays arrive.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    contribution: Spectrum,
+    rays: u32,
+}
+
+/// Memory of a thread, reused between blocks.
+#[derive(Default)]
+pub struct ClusterScratch {
+    pending: Vec<u32>,
+    parts: Vec<Part>,
+    /// Where the parts of each point end.
+    ends: Vec<usize>,
+    targets: Vec<Vec3>,
+    fans: Fans,
+    masks: Vec<u64>,
+}
+
+/// What a point sees of a cluster, occlusion left aside.
+struct View {
+    contribution: Spectrum,
+    /// Largest channel of it.
+    measure: f32,
+    /// No more than this can arrive, largest channel.
+    bound: f32,
+    /// Radius over distance.
+    size: f32,
+    /// All of it faces the point and is above its horizon.
+    whole: bool,
+}
+
+impl Sampler<'_> {
+    /// Evaluates `clusters` at each receiver into `gathers`; returns the number of rays. With `settled`, the irradiance of the
+    /// receivers is what they have in the end, and thresholds follow that alone.
+    pub fn gather_clusters(
+        &self,
+        clusters: &Clusters,
+        receivers: &[(Receiver, u32)],
+        settled: bool,
+        scratch: &mut ClusterScratch,
+        gathers: &mut Vec<Gather>,
+    ) -> u64 {
+        scratch.parts.clear();
+        scratch.ends.clear();
+        scratch.fans.clear();
+        for (receiver, key) in receivers {
+            let limits = self.cluster_limits(clusters, receiver, settled, &mut scratch.pending);
+            scratch.targets.clear();
+            Cut {
+                sampler: self,
+                clusters,
+                receiver,
+                key: *key,
+                limits,
+            }
+            .take(scratch);
+            scratch.ends.push(scratch.parts.len());
+            let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
+            for fan in scratch.targets.chunks(MAX_FAN) {
+                scratch.fans.begin(origin);
+                fan.iter().for_each(|target| scratch.fans.push(*target));
+            }
+        }
+        self.visibility.occluded(&scratch.fans, &mut scratch.masks);
+        sum(scratch, gathers);
+        scratch.fans.segments() as u64
+    }
+
+    fn cluster_limits(
+        &self,
+        clusters: &Clusters,
+        receiver: &Receiver,
+        settled: bool,
+        pending: &mut Vec<u32>,
+    ) -> Limits {
+        let expected = clusters.expected(receiver, pending);
+        let local = if settled {
+            receiver.irradiance.max(LEAST_KNOWN * expected)
+        } else {
+            receiver.irradiance.max(expected)
+        };
+        let unit = self.thresholds.scale.at(f64::from(local));
+        Limits {
+            difference: self.thresholds.difference * unit,
+            estimate: self.thresholds.estimate * unit,
+        }
+    }
+}
+
+/// Adds up the parts of each point.
+fn sum(scratch: &ClusterScratch, gathers: &mut Vec<Gather>) {
+    gathers.clear();
+    let (mut fan, mut bit, mut first) = (0, 0, 0);
+    for &end in &scratch.ends {
+        let mut gather = Gather::default();
+        for part in &scratch.parts[first..end] {
+            let mut seen = 0;
+            for _ in 0..part.rays {
+                if bit == scratch.fans.range(fan).len() {
+                    (fan, bit) = (fan + 1, 0);
+                }
+                seen += u32::from(scratch.masks[fan] >> bit & 1 == 0);
+                bit += 1;
+            }
+            gather.unoccluded += part.contribution;
+            gather.irradiance += part.contribution * (seen as f32 / part.rays as f32);
+        }
+        if first < end {
+            (fan, bit) = (fan + 1, 0);
+        }
+        first = end;
+        let all = gather.unoccluded.element_sum();
+        gather.visibility = (all > 0.0).then(|| gather.irradiance.element_sum() / all);
+        gathers.push(gather);
+    }
+}
+
+impl Clusters {
+    /// Points no higher than this above a cluster lie in its plane, up to rounding.
+    fn hair(&self) -> f32 {
+        0.1 * self.offset
+    }
+
+    /// About what a point would get were nothing in between, largest channel.
+    fn expected(&self, receiver: &Receiver, pending: &mut Vec<u32>) -> f32 {
+        let (point, normal) = (receiver.point.as_vec3(), receiver.normal.as_vec3());
+        let mut sum = Spectrum::ZERO;
+        pending.clear();
+        pending.extend(&self.roots);
+        while let Some(number) = pending.pop() {
+            let node = &self.nodes[number as usize];
+            let Some(view) = node.view(point, normal, self.hair()) else {
+                continue;
+            };
+            match node.children {
+                Children::Two(second) if view.size > GUESS => pending.extend([second, number + 1]),
+                _ => sum += view.contribution,
+            }
+        }
+        sum.max_element()
+    }
+
+    /// A point of a cluster that a ray to it can be aimed at: one that faces the point, if there is one on the way down.
+    fn target(&self, mut number: u32, point: Vec3) -> Vec3 {
+        loop {
+            let node = &self.nodes[number as usize];
+            let to = node.sends.target - point;
+            match node.children {
+                Children::Two(second) if node.sends.facing.dot(to) >= 0.0 => {
+                    let towards = |n: u32| -self.nodes[n as usize].sends.flux.dot(to);
+                    let first = number + 1;
+                    number = if towards(first) >= towards(second) {
+                        first
+                    } else {
+                        second
+                    };
+                }
+                _ => return node.sends.target,
+            }
+        }
+    }
+}
+
+impl Node {
+    /// What a point sees of it; `None` if nothing.
+    #[inline]
+    fn view(&self, point: Vec3, normal: Vec3, hair: f32) -> Option<View> {
+        let Sends {
+            flux,
+            weight,
+            colour,
+            ..
+        } = self.sends;
+        let to = self.centre - point;
+        let height = normal.dot(to);
+        if weight <= 0.0 || height <= -self.radius {
+            return None;
+        }
+        let square = to.length_squared();
+        let distance = square.sqrt();
+        // How far in front of the planes of its tiles the point is, at most and at least.
+        let along = -self.axis.dot(to);
+        let across = (square - along * along).max(0.0).sqrt();
+        let (cosine, sine) = self.cone;
+        let slack = self.thickness + self.radius * sine;
+        let most = if along >= distance * cosine {
+            distance
+        } else {
+            along * cosine + across * sine
+        };
+        if most + slack <= hair {
+            return None;
+        }
+        let least = along * cosine - across * sine - slack;
+        let whole = least >= 0.0 && height >= self.radius;
+        // Right beside the centre there is no direction; what is that near is opened.
+        let away = distance.max(0.01 * self.radius).recip();
+        let towards = -flux.dot(to) * away;
+        let sent = if least >= 0.0 {
+            towards
+        } else {
+            towards.max(0.0) + 0.25 * (weight - flux.length())
+        };
+        let above = if height >= self.radius {
+            height
+        } else {
+            (height + self.radius).powi(2) / (4.0 * self.radius)
+        };
+        let gap = (distance - self.radius).max(0.0);
+        let nearest = weight * ((height + self.radius) * away).min(1.0) / (PI * gap * gap);
+        let brightest = weight / self.area.max(f32::MIN_POSITIVE);
+        let bound = nearest.min(2.0 * brightest);
+        let near = self.second_order(normal, along, height, square);
+        let sent = sent.max(0.0) * above * away * near * away * away / PI;
+        let contribution = colour * sent.min(bound);
+        Some(View {
+            contribution,
+            measure: contribution.max_element(),
+            bound: colour.max_element() * bound,
+            size: self.radius * away,
+            whole,
+        })
+    }
+}
+
+impl Node {
+    /// What the size of a flat cluster makes of the kernel at its centre: 1 + ½ s² Δ ln-free second derivative of cosθ_s cosθ_r / r²
+    /// in its plane, 1 + (s²/r²) (4 + 4 n_s·n_r a/b - 12 a²/r²) with a = n_s·d, b = n_r·d; less than 1 as 1/(1 - …), which is
+    /// Eq. (1) for a disk on the axis.
+    #[inline]
+    fn second_order(&self, normal: Vec3, along: f32, height: f32, square: f32) -> f32 {
+        // Nearer than this it is opened, whatever this says.
+        let square = square.max(self.radius * self.radius);
+        let across = normal.dot(self.axis) * along / height.max(self.radius);
+        let bend = 4.0 - 4.0 * across - 12.0 * along * along / square;
+        let change = self.variance / square * bend;
+        if change >= 0.0 {
+            1.0 + change
+        } else {
+            1.0 / (1.0 - change)
+        }
+    }
+}
+
+/// The cut of one point.
+struct Cut<'a> {
+    sampler: &'a Sampler<'a>,
+    clusters: &'a Clusters,
+    receiver: &'a Receiver,
+    key: u32,
+    limits: Limits,
+}
+
+impl Cut<'_> {
+    /// Adds the parts of the point and the targets of their rays.
+    fn take(mut self, scratch: &mut ClusterScratch) {
+        let (point, normal) = (
+            self.receiver.point.as_vec3(),
+            self.receiver.normal.as_vec3(),
+        );
+        let begun = scratch.parts.len();
+        scratch.pending.clear();
+        scratch.pending.extend(self.clusters.roots.iter().rev());
+        while let Some(number) = scratch.pending.pop() {
+            let node = &self.clusters.nodes[number as usize];
+            let Some(view) = node.view(point, normal, self.clusters.hair()) else {
+                continue;
+            };
+            if self.is_fine(&view) {
+                if view.measure > 0.0 {
+                    scratch.parts.push(Part {
+                        contribution: view.contribution,
+                        rays: 1,
+                    });
+                    scratch.targets.push(self.clusters.target(number, point));
+                }
+            } else if let Children::Two(second) = node.children {
+                scratch.pending.extend([second, number + 1]);
+            } else if let Children::Tiles { first, count } = node.children {
+                for place in first..first + count {
+                    self.take_tile(self.clusters.order[place as usize], scratch);
+                }
+            }
+            if scratch.parts.len() - begun > MOST {
+                self.limits.difference *= 2.0;
+                self.limits.estimate *= 2.0;
+            }
+        }
+    }
+
+    /// Whether a cluster needs not be opened.
+    fn is_fine(&self, view: &View) -> bool {
+        let Limits {
+            difference,
+            estimate,
+        } = self.limits;
+        let bound = f64::from(view.bound);
+        if !view.whole {
+            return bound <= 0.5 * estimate;
+        }
+        let measure = f64::from(view.measure);
+        let left = 0.5 * f64::from(view.size * view.size) * measure;
+        measure <= estimate && view.size < 0.5 && left <= difference || bound <= difference
+    }
+
+    /// Clusters take Eq. (1) where the five-times rule would; a single tile is near.
+    fn formula(&self) -> Formula {
+        match self.sampler.formula {
+            Formula::Disk => Formula::Disk,
+            Formula::Hybrid(_) | Formula::Polygon => Formula::Polygon,
+        }
+    }
+
+    fn take_tile(&self, number: u32, scratch: &mut ClusterScratch) {
+        let radiosity = self.clusters.radiosity[number as usize];
+        if radiosity.max_element() <= 0.0 {
+            return;
+        }
+        let tile = &self.clusters.tiles[number as usize];
+        let shape = if tile.corner_count() == 3 {
+            SourceShape::Triangle
+        } else {
+            SourceShape::Quad
+        };
+        let cell = Cell::new(tile.corners.map(Vec3::as_dvec3), shape);
+        let normal = tile.normal.as_dvec3();
+        let sight = self.formula().sight(*self.receiver, &cell, normal);
+        let contribution = radiosity * sight.form_factor as f32;
+        let measure = f64::from(contribution.max_element());
+        if measure <= 0.0 {
+            return;
+        }
+        let side = (measure / self.limits.estimate).sqrt().ceil();
+        let side = (side as u32).clamp(1, MOST_RAYS);
+        let cut = sight.cut.then(|| above_horizon(*self.receiver, &cell));
+        for ray in 0..side * side {
+            let [s, t] = jitter(self.key, number ^ ray.wrapping_mul(0x9e37_79b9));
+            let place = |i: u32, x: f64| (f64::from(i) + 0.05 + 0.9 * x) / f64::from(side);
+            let (s, t) = (place(ray % side, s), place(ray / side, t));
+            let point: DVec3 = match &cut {
+                Some(cut) => self.receiver.point + point_in_cut(cut, s, t),
+                None => cell.at(s, t),
+            };
+            scratch
+                .targets
+                .push(lift(point, normal, self.sampler.extent).as_vec3());
+        }
+        scratch.parts.push(Part {
+            contribution,
+            rays: side * side,
+        });
+    }
+}

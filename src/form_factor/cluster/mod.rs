@@ -1,0 +1,148 @@
+//! Many patches that shoot as one: a tree of clusters.
+//!
+//! What a scene of many small polygons radiates is cut into flat [`Tile`]s, and these are grouped by the way they face and then by
+//! where they are (`build.rs`). A cluster knows how large it is, into which cone its tiles face, and what it sends (`light.rs`):
+//! the sum w of area × radiosity, and the same sum with each tile's normal, P. Seen from far away it gives what all its tiles
+//! give together, `P·(-d) cosθ_r / π r²` with a term of second order for its size (`view.rs`), of which Eq. (1) is the case of a
+//! disk on the axis.
+//!
+//! A point gathers from the coarsest clusters that its thresholds allow, and from single tiles with the five-times rule where they
+//! do not (`gather.rs`); one ray goes to each.
+
+mod build;
+mod gather;
+mod light;
+#[cfg(test)]
+mod tests;
+
+pub use gather::ClusterScratch;
+
+use crate::radiometry::Spectrum;
+use glam::{DVec3, Vec3};
+
+/// A flat triangle or quad that shoots.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tile {
+    /// Counter-clockwise seen from the radiating side; a triangle repeats its first corner.
+    pub corners: [Vec3; 4],
+    /// Unit normal of the radiating side.
+    pub normal: Vec3,
+}
+
+impl Tile {
+    /// A tile with three or four corners.
+    pub fn new(corners: &[DVec3], normal: DVec3) -> Self {
+        let fourth = *corners.get(3).unwrap_or(&corners[0]);
+        let corners = [corners[0], corners[1], corners[2], fourth];
+        Self {
+            corners: corners.map(|corner| corner.as_vec3()),
+            normal: normal.as_vec3(),
+        }
+    }
+
+    /// Three or four.
+    pub fn corner_count(&self) -> usize {
+        if self.corners[3] == self.corners[0] {
+            3
+        } else {
+            4
+        }
+    }
+
+    /// Its area.
+    pub fn area(&self) -> f32 {
+        let [a, b, c, d] = self.corners;
+        0.5 * (c - a).cross(d - b).length()
+    }
+
+    /// Its centre of mass, taken for the mean of its corners.
+    fn centre(&self) -> Vec3 {
+        let count = self.corner_count();
+        self.corners[..count].iter().sum::<Vec3>() / count as f32
+    }
+
+    /// The point at (s, t) of the unit square, mapped evenly in area for triangles and parallelograms.
+    pub fn at(&self, s: f32, t: f32) -> Vec3 {
+        let [a, b, c, d] = self.corners;
+        if self.corner_count() == 4 {
+            return a.lerp(b, s).lerp(d.lerp(c, s), t);
+        }
+        let (s, t) = if s + t > 1.0 {
+            (1.0 - s, 1.0 - t)
+        } else {
+            (s, t)
+        };
+        a + (b - a) * s + (c - a) * t
+    }
+}
+
+/// The tree over all tiles of a scene, with what they radiate.
+#[derive(Debug, Clone)]
+pub struct Clusters {
+    tiles: Vec<Tile>,
+    /// Radiosity of each tile.
+    radiosity: Vec<Spectrum>,
+    /// In depth-first order: the first child of an inner node follows it.
+    nodes: Vec<Node>,
+    roots: Vec<u32>,
+    /// The tiles in the order of the leaves.
+    order: Vec<u32>,
+    /// By how much the targets of rays are lifted off their tiles.
+    offset: f32,
+}
+
+/// A cluster.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    centre: Vec3,
+    /// All tiles are within this distance from the centre.
+    radius: f32,
+    /// Cosine and sine of the angle between the axis of the cone and the normal that differs most from it.
+    cone: (f32, f32),
+    axis: Vec3,
+    /// No tile is farther than this from the plane through the centre across the axis.
+    thickness: f32,
+    /// Length of the sum of the tiles' vector areas.
+    area: f32,
+    /// Variance of a point of it along one axis of its plane, were it the same along both.
+    variance: f32,
+    children: Children,
+    sends: Sends,
+}
+
+/// What is below a cluster.
+#[derive(Debug, Clone, Copy)]
+enum Children {
+    /// The next node and this one.
+    Two(u32),
+    /// Tiles `order[first..first + count]`.
+    Tiles { first: u32, count: u32 },
+}
+
+/// What a cluster sends.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sends {
+    /// Σ area × mean radiosity of the channels × normal.
+    flux: Vec3,
+    /// Σ area × mean radiosity of the channels.
+    weight: f32,
+    /// The radiosity by channel over its mean.
+    colour: Spectrum,
+    /// Where rays to it are aimed: a point of one of its tiles, drawn in proportion to what they send.
+    target: Vec3,
+    /// The normal there.
+    facing: Vec3,
+}
+
+impl Clusters {
+    /// The tiles with the radiosity of each, in the order in which they were given.
+    pub fn tiles(&self) -> impl ExactSizeIterator<Item = (&Tile, Spectrum)> + Clone {
+        self.tiles.iter().zip(self.radiosity.iter().copied())
+    }
+
+    /// Memory that the tree holds, bytes.
+    pub fn bytes(&self) -> usize {
+        self.nodes.capacity() * size_of::<Node>()
+            + self.tiles.capacity() * (size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>())
+    }
+}

@@ -1,0 +1,284 @@
+//! Where many small patches make one surface: corners of patches that meet are one *site*, which receives once, with one normal.
+//!
+//! Two patches belong together along a side that they and nobody else share, if their normals differ little and nothing can stand on
+//! that side: it is no line of contact, and the patches are curved or small. The site of a corner is made of all patches around
+//! it that belong together, with the mean of their normals by angle. Small patches receive at their corners only. So curved
+//! surfaces have no facets, and light is asked for once where it used to be asked for by each patch.
+
+use super::{Lattice, Mesh, NONE, Patch, UNIT};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+/// Patches of which each is smooth with the next if their normals differ by no more than this.
+const SMOOTH: f64 = 35.0;
+
+/// … and curved if they differ by more than this: nobody puts a wall exactly on the side of a facet.
+const CURVED: f64 = 0.5;
+
+/// A site whose patches face away from its normal by more than this cosine is none.
+const FACING: f64 = 0.3;
+
+/// What is welded. Empty: each vertex receives for itself.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Weld {
+    /// By vertex there was: the vertex that receives for it, or [`NONE`] if it follows the corners of its element.
+    leader: Vec<u32>,
+    /// Where and with which normal a site receives, by its leader.
+    sites: FxHashMap<u32, (DVec3, Vec3)>,
+    /// Elements whose centres follow.
+    followed: Vec<u32>,
+}
+
+/// Corners of two patches at the ends of a side that they share.
+type Side = ([u64; 6], u32, u32, u32);
+
+impl Mesh {
+    /// Welds what makes one surface.
+    pub fn weld(&mut self) {
+        let corners = self.corner_vertices();
+        let mut sites = Sites::new(self.vertices.len());
+        for (p, q, ends) in self.smooth_sides(&corners) {
+            debug_assert!(p != q);
+            ends.into_iter().for_each(|[a, b]| sites.join(a, b));
+        }
+        let mut weld = Weld {
+            leader: (0..self.vertices.len() as u32).collect(),
+            ..Weld::default()
+        };
+        for site in sites.groups() {
+            self.settle(&site, &mut weld);
+        }
+        for patch in &self.patches {
+            let root = patch.roots.start;
+            let element = &self.elements[root as usize];
+            if patch.roots.len() == 1 && element.is_leaf() && !self.may_split(root) {
+                weld.leader[element.centre as usize] = NONE;
+                weld.followed.push(root);
+            }
+        }
+        self.weld = weld;
+    }
+
+    /// Whether [`Self::weld`] was called.
+    pub fn is_welded(&self) -> bool {
+        !self.weld.leader.is_empty()
+    }
+
+    /// Whether a vertex receives for itself, and for its site.
+    pub fn receives(&self, vertex: u32) -> bool {
+        let leader = self.weld.leader.get(vertex as usize);
+        leader.is_none_or(|leader| *leader == vertex)
+    }
+
+    /// Where a vertex receives, and the normal with which it does.
+    pub fn receiver(&self, vertex: u32) -> (DVec3, DVec3) {
+        let of = &self.vertices[vertex as usize];
+        let patch = &self.patches[of.patch as usize];
+        if self.weld.sites.is_empty() {
+            return (of.point, patch.normal);
+        }
+        match self.site(vertex) {
+            Some((point, normal)) => (*point, normal.as_dvec3()),
+            None => (
+                of.point,
+                self.interpolated_normal(patch, of.patch, of.lattice),
+            ),
+        }
+    }
+
+    fn site(&self, vertex: u32) -> Option<&(DVec3, Vec3)> {
+        let leader = self.weld.leader.get(vertex as usize)?;
+        self.weld.sites.get(leader)
+    }
+
+    /// Gives the values of vertices that receive to those that they receive for; `mean` is that of three or four corners.
+    pub fn share<T: Copy>(&self, values: &mut [T], mean: impl Fn(&[T]) -> T) {
+        for (vertex, leader) in self.weld.leader.iter().enumerate() {
+            if *leader != NONE {
+                values[vertex] = values[*leader as usize];
+            }
+        }
+        for element in &self.weld.followed {
+            let of = &self.elements[*element as usize];
+            let corners = of.corners();
+            let around = [0, 1, 2, corners.len() - 1].map(|i| values[corners[i] as usize]);
+            values[of.centre as usize] = mean(&around[..corners.len()]);
+        }
+    }
+
+    /// The vertices in the corners of each patch.
+    fn corner_vertices(&self) -> Vec<[u32; 4]> {
+        let corners = |(number, patch): (usize, &Patch)| {
+            let root = &self.elements[patch.roots.start as usize];
+            if patch.roots.len() == 1 {
+                return root.corners;
+            }
+            let at = |(u, v)| {
+                self.vertex_at(number as u32, Lattice::new(u, v))
+                    .unwrap_or(NONE)
+            };
+            [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)].map(at)
+        };
+        self.patches.par_iter().enumerate().map(corners).collect()
+    }
+
+    /// Pairs of patches that belong together along a side, with the corners of both at its ends.
+    fn smooth_sides(&self, corners: &[[u32; 4]]) -> Vec<(u32, u32, [[u32; 2]; 2])> {
+        let mut sides: Vec<Side> = (0..self.patches.len() as u32)
+            .into_par_iter()
+            .flat_map_iter(|number| self.sides_of(number, &corners[number as usize]))
+            .collect();
+        sides.par_sort_unstable();
+        let shared = sides.chunk_by(|a, b| a.0 == b.0);
+        shared.flat_map(|sides| self.pairs(sides)).collect()
+    }
+
+    /// The sides of a patch by the bits of their ends in order, with the vertices there.
+    fn sides_of(&self, number: u32, corners: &[u32; 4]) -> impl Iterator<Item = Side> {
+        let patch = &self.patches[number as usize];
+        let count = patch.corners().len();
+        let ends = (0..count).map(move |side| {
+            let next = (side + 1) % count;
+            let [p, q] = [side, next].map(|i| patch.corners()[i].to_array().map(f64::to_bits));
+            let [a, b] = [corners[side], corners[next]];
+            let (p, q, a, b) = if p <= q { (p, q, a, b) } else { (q, p, b, a) };
+            ([p[0], p[1], p[2], q[0], q[1], q[2]], number, a, b)
+        });
+        // A cut is a line of contact: something stands there.
+        let outline = patch.outline;
+        ends.enumerate()
+            .filter(move |(side, _)| outline[*side])
+            .map(|(_, side)| side)
+    }
+
+    /// Of all patches on one side, those of two surfaces that belong together: both fronts, or both backs.
+    fn pairs(&self, sides: &[Side]) -> Vec<(u32, u32, [[u32; 2]; 2])> {
+        let patch = |side: &Side| &self.patches[side.1 as usize];
+        let mut surfaces: Vec<u32> = sides.iter().map(|side| patch(side).surface).collect();
+        surfaces.dedup();
+        if surfaces.len() != 2 {
+            return Vec::new();
+        }
+        let mut pairs = Vec::new();
+        for (i, a) in sides.iter().enumerate() {
+            for b in &sides[i + 1..] {
+                if patch(a).surface != patch(b).surface && self.belong_together(patch(a), patch(b))
+                {
+                    pairs.push((a.1, b.1, [[a.2, b.2], [a.3, b.3]]));
+                }
+            }
+        }
+        pairs
+    }
+
+    fn belong_together(&self, a: &Patch, b: &Patch) -> bool {
+        let cosine = a.normal.dot(b.normal);
+        let curved = cosine < CURVED.to_radians().cos();
+        let small = 4.0 * self.limits.min_size * self.frame.extent();
+        let is_small = |patch: &Patch| crate::geometry::polygon::diameter(patch.corners()) < small;
+        let facing = cosine >= SMOOTH.to_radians().cos();
+        facing && (curved || is_small(a) && is_small(b)) && same_material(a, b)
+    }
+
+    /// Makes one of the corners in a site.
+    fn settle(&self, site: &[u32], weld: &mut Weld) {
+        let patch_of = |v: &u32| &self.patches[self.vertices[*v as usize].patch as usize];
+        let position = self.position(site[0]);
+        let normal: DVec3 = site
+            .iter()
+            .map(|v| patch_of(v).normal * angle_at(patch_of(v), position))
+            .sum();
+        let normal = normal.normalize_or_zero();
+        if site.iter().any(|v| patch_of(v).normal.dot(normal) < FACING) {
+            return;
+        }
+        let moved = site
+            .iter()
+            .map(|v| self.vertices[*v as usize].point - position);
+        let mean = moved.sum::<DVec3>() / site.len() as f64;
+        // Not below any of its patches.
+        let below = |v: &u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);
+        let up = site.iter().map(below).fold(0.0, f64::max);
+        let leader = site[0];
+        let point = position + mean + normal * up;
+        weld.sites.insert(leader, (point, normal.as_vec3()));
+        site.iter().for_each(|v| weld.leader[*v as usize] = leader);
+    }
+
+    /// The normal inside a patch whose corners have normals of their own.
+    fn interpolated_normal(&self, patch: &Patch, number: u32, at: Lattice) -> DVec3 {
+        let (u, v) = at.unit();
+        let corner = |place: Lattice| {
+            let vertex = self.vertex_at(number, place);
+            let site = vertex.and_then(|v| self.site(v));
+            site.map_or(patch.normal, |(_, normal)| normal.as_dvec3())
+        };
+        let [a, b, c, d] =
+            [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)].map(|(u, v)| Lattice::new(u, v));
+        let mixed = if patch.is_triangle() {
+            corner(a) * (1.0 - u - v) + corner(b) * u + corner(d) * v
+        } else {
+            (corner(a) * (1.0 - u) + corner(b) * u) * (1.0 - v)
+                + (corner(d) * (1.0 - u) + corner(c) * u) * v
+        };
+        mixed.normalize_or(patch.normal)
+    }
+}
+
+fn same_material(a: &Patch, b: &Patch) -> bool {
+    a.exitance == b.exitance
+}
+
+/// The angle of a patch at one of its corners.
+fn angle_at(patch: &Patch, position: DVec3) -> f64 {
+    let corners = patch.corners();
+    let distance = |i: &usize| corners[*i].distance_squared(position);
+    let count = corners.len();
+    let nearest = (0..count).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let at = nearest.unwrap_or(0);
+    let [before, after] = [at + count - 1, at + 1].map(|i| corners[i % count] - corners[at]);
+    before.angle_between(after)
+}
+
+/// Disjoint sets of vertices.
+struct Sites {
+    parent: Vec<u32>,
+}
+
+impl Sites {
+    fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count as u32).collect(),
+        }
+    }
+
+    fn root(&mut self, mut vertex: u32) -> u32 {
+        while self.parent[vertex as usize] != vertex {
+            let above = self.parent[self.parent[vertex as usize] as usize];
+            self.parent[vertex as usize] = above;
+            vertex = above;
+        }
+        vertex
+    }
+
+    /// The lower root stays, so that the first vertex of a site leads it.
+    fn join(&mut self, a: u32, b: u32) {
+        let [a, b] = [a, b].map(|v| self.root(v));
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+
+    /// The sets of more than one vertex, each in order.
+    fn groups(mut self) -> Vec<Vec<u32>> {
+        let mut members: Vec<(u32, u32)> = (0..self.parent.len() as u32)
+            .map(|vertex| (self.root(vertex), vertex))
+            .collect();
+        members.par_sort_unstable();
+        let groups = members
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|group| group.len() > 1);
+        groups
+            .map(|group| group.iter().map(|(_, v)| *v).collect())
+            .collect()
+    }
+}

@@ -1,0 +1,229 @@
+//! A scene of many patches: all that is unshot is shot at once, as clusters; a wave of light after the other.
+//!
+//! Each wave arrives at the vertices as a shot does, slice by slice, and refines the mesh as a shot does. What it takes is a cut
+//! through the tree of clusters for each vertex, not a visit to each vertex for each patch.
+
+use super::course::{ALL, Shot, Stage};
+use super::light::{Light, Sign};
+use super::observer::Phase;
+use super::run::Solver;
+use super::shoot::{Beam, Shooter, shoot_at};
+use super::tiling::Tiling;
+use crate::form_factor::Gather;
+use crate::mesh::Mesh;
+use crate::radiometry::{Power, Spectrum};
+use serde::{Deserialize, Serialize};
+
+/// Vertices that a wave arrives at between two looks at the observer.
+const SLICE: usize = 1 << 16;
+
+/// A wave refines the mesh if it carries this part of the emitted power.
+const MESHING: f64 = 0.1;
+
+/// How much coarser the thresholds ε_fe and ε_fd of waves are than those of the gathering at the end.
+const COARSER: f64 = 2.0;
+
+/// A wave that has arrived at the first vertices.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Wave {
+    pub kind: Kind,
+    /// Radiosity of the tiles.
+    pub cells: Vec<Spectrum>,
+    /// As a fraction of the emitted power.
+    pub power: f64,
+    /// The first vertex that it has not arrived at.
+    pub next: u32,
+    pub arrived: Vec<Gather>,
+}
+
+impl Wave {
+    pub fn is_whole(&self) -> bool {
+        matches!(self.kind, Kind::Whole(_))
+    }
+
+    /// What is done, for who watches.
+    pub fn phase(&self, mesh: &Mesh) -> Phase {
+        let (done, of) = (self.next, mesh.vertices.len() as u32);
+        match self.kind {
+            Kind::Unshot(_) => Phase::Shooting,
+            Kind::Whole(_) => Phase::Gathering { done, of },
+        }
+    }
+}
+
+/// What a wave carries.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) enum Kind {
+    /// What is unshot, of one sign.
+    Unshot(Sign),
+    /// All light once more, what is unshot as an ambient term in it.
+    Whole(Spectrum),
+}
+
+impl Solver<'_> {
+    /// Whether there are so many patches that they shoot as clusters.
+    pub(super) fn is_clustered(&self) -> bool {
+        self.mesh.patches.len() > self.options.cluster_from
+    }
+
+    /// All that is unshot of the stronger sign sets out.
+    pub(super) fn begin_wave(&mut self, powers: &[Power]) {
+        let of = |sign: usize| {
+            powers
+                .iter()
+                .skip(sign)
+                .step_by(2)
+                .sum::<Power>()
+                .element_sum()
+        };
+        let sign = if of(0) >= of(1) { 0 } else { 1 };
+        let power = of(sign) / self.emitted().element_sum();
+        let sign = Sign::ALL[sign];
+        let tiling = self.tiling();
+        let cells = tiling.unshot(&self.mesh, &self.light, sign);
+        self.tiling = Some(tiling);
+        self.set_out(Kind::Unshot(sign), cells, power);
+    }
+
+    /// All light sets out once more.
+    pub(super) fn begin_gathering(&mut self) {
+        let ambient = self.ambient();
+        let whole = self.whole(ambient);
+        let tiling = self.tiling();
+        let cells = tiling.unshot(&self.mesh, &whole, Sign::Positive);
+        self.tiling = Some(tiling);
+        self.set_out(Kind::Whole(ambient), cells, 1.0);
+    }
+
+    fn set_out(&mut self, kind: Kind, cells: Vec<Spectrum>, power: f64) {
+        self.course.stage = Stage::Waving(Wave {
+            kind,
+            cells,
+            power,
+            next: 0,
+            arrived: vec![Gather::default(); self.mesh.vertices.len()],
+        });
+    }
+
+    /// The tiles of the mesh, made if there are none yet.
+    pub(super) fn tiling(&mut self) -> Tiling {
+        let made = self.tiling.take();
+        made.unwrap_or_else(|| Tiling::new(&self.mesh))
+    }
+
+    /// The tiles as they radiate.
+    pub(super) fn radiating(&mut self, cells: &[Spectrum], settled: bool) -> Shooter {
+        let mut tiling = self.tiling();
+        tiling
+            .clusters
+            .radiate(cells.to_vec(), self.course.shots as u32);
+        Shooter::All { tiling, settled }
+    }
+
+    /// The wave arrives at some more vertices.
+    pub(super) fn wave(&mut self, mut wave: Wave) {
+        let settled = matches!(wave.kind, Kind::Whole(_));
+        let all = match self.radiated.take() {
+            Some(all) => all,
+            None => self.radiating(&wave.cells, settled),
+        };
+        let mut sampler = self.sampler();
+        if !settled {
+            sampler.thresholds.difference *= COARSER;
+            sampler.thresholds.estimate *= COARSER;
+        }
+        let beam = Beam {
+            sampler: &sampler,
+            shooter: &all,
+            sign: match wave.kind {
+                Kind::Unshot(sign) => sign,
+                Kind::Whole(_) => Sign::Positive,
+            },
+        };
+        let end = (wave.next as usize + SLICE).min(self.mesh.vertices.len());
+        let open = |v: &u32| !self.mesh.buried[*v as usize];
+        let slice: Vec<u32> = (wave.next..end as u32).filter(open).collect();
+        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &slice, &mut wave.arrived);
+        wave.next = end as u32;
+        self.radiated = Some(all);
+        if end == self.mesh.vertices.len() {
+            self.arrive(wave);
+        } else {
+            self.course.stage = Stage::Waving(wave);
+        }
+    }
+
+    /// A wave has arrived everywhere.
+    fn arrive(&mut self, mut wave: Wave) {
+        self.mesh.share(&mut wave.arrived, Gather::mean);
+        let mut irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
+        self.mesh.continue_to_buried(&mut irradiance, 0);
+        for (gather, received) in wave.arrived.iter_mut().zip(irradiance) {
+            gather.irradiance = received;
+        }
+        match wave.kind {
+            Kind::Unshot(sign) => self.arrive_unshot(wave, sign),
+            Kind::Whole(ambient) => self.arrive_whole(&wave, ambient),
+        }
+    }
+
+    fn arrive_unshot(&mut self, wave: Wave, sign: Sign) {
+        for patch in 0..self.mesh.patches.len() {
+            self.light.take(&self.mesh, patch, sign);
+        }
+        for (vertex, gather) in wave.arrived.iter().enumerate() {
+            self.light.irradiance[vertex] += gather.irradiance;
+            self.light.unshot[vertex] += gather.irradiance;
+        }
+        let meshes = wave.power >= MESHING && self.course.meshing_ended.is_none();
+        let may_split = |e: &u32| self.mesh.may_split(*e);
+        let shot = Shot {
+            shooter: ALL,
+            sign,
+            power: wave.power,
+            cells: wave.cells,
+            candidates: if meshes {
+                self.mesh.leaves().filter(may_split).collect()
+            } else {
+                Vec::new()
+            },
+            feelers: Vec::new(),
+            arrived: wave.arrived,
+            made: self.radiated.take(),
+        };
+        if meshes {
+            self.course.stage = Stage::Refining(shot);
+        } else {
+            self.end_shot(shot);
+        }
+    }
+
+    fn arrive_whole(&mut self, wave: &Wave, ambient: Spectrum) {
+        let whole: Light = self.whole(ambient);
+        let Some(all) = self.radiated.take() else {
+            return;
+        };
+        let seed = self.course.shots as u32;
+        let lost = self.escape(ALL as usize, &all, wave.power, seed);
+        let sent: f64 = (0..self.mesh.patches.len())
+            .map(|p| {
+                whole
+                    .unshot_power(&self.mesh, p, Sign::Positive)
+                    .element_sum()
+            })
+            .sum();
+        let irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
+        let weighted = irradiance.iter().zip(&self.mesh.weights);
+        let received: Power = weighted.map(|(e, w)| e.as_dvec3() * *w).sum();
+        let sums = vec![((received + lost.all).element_sum() / sent, sent)];
+        self.keep_tiling(all);
+        self.take_over(irradiance, &whole, lost, sums);
+    }
+
+    /// Keeps the tiles for the next wave.
+    pub(super) fn keep_tiling(&mut self, shooter: Shooter) {
+        if let Shooter::All { tiling, .. } = shooter {
+            self.tiling = Some(tiling);
+        }
+    }
+}
