@@ -138,21 +138,17 @@ impl Mesh {
     fn sides_of(&self, number: u32, corners: &[u32; 4]) -> impl Iterator<Item = Side> {
         let patch = &self.patches[number as usize];
         let count = patch.corners().len();
-        let ends = (0..count).map(move |side| {
+        (0..count).map(move |side| {
             let next = (side + 1) % count;
             let [p, q] = [side, next].map(|i| patch.corners()[i].to_array().map(f64::to_bits));
             let [a, b] = [corners[side], corners[next]];
             let (p, q, a, b) = if p <= q { (p, q, a, b) } else { (q, p, b, a) };
             ([p[0], p[1], p[2], q[0], q[1], q[2]], number, a, b)
-        });
-        // A cut is a line of contact: something stands there.
-        let outline = patch.outline;
-        ends.enumerate()
-            .filter(move |(side, _)| outline[*side])
-            .map(|(_, side)| side)
+        })
     }
 
-    /// Of all patches on one side, those of two surfaces that belong together: both fronts, or both backs.
+    /// Of all patches on one side, those of two surfaces that belong together: both fronts, or both backs. The side between two
+    /// pieces of one surface is a line of contact: something stands there.
     fn pairs(&self, sides: &[Side]) -> Vec<(u32, u32, [[u32; 2]; 2])> {
         let patch = |side: &Side| &self.patches[side.1 as usize];
         let mut surfaces: Vec<u32> = sides.iter().map(|side| patch(side).surface).collect();

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 const SLICE: usize = 1 << 16;
 
 /// A wave refines the mesh if it carries this part of the emitted power.
-const MESHING: f64 = 0.1;
+const MESHING: f64 = 0.3;
 
 /// How much coarser the thresholds ε_fe and ε_fd of waves are than those of the gathering at the end.
 const COARSER: f64 = 2.0;

@@ -35,14 +35,27 @@ pub fn add_grey(scene: &mut Scene, reflectance: f32, exitance: f32) -> u32 {
 
 /// Adds a quad that radiates from its front, the side from which its corners run counter-clockwise.
 pub fn add_quad(scene: &mut Scene, material: u32, corners: [DVec3; 4]) {
-    let index = |scene: &mut Scene, corner: DVec3| {
-        let known = scene.vertices.iter().position(|v| *v == corner);
-        known.unwrap_or_else(|| {
-            scene.vertices.push(corner);
-            scene.vertices.len() - 1
-        }) as u32
-    };
-    let corners = Corners::Quad(corners.map(|corner| index(scene, corner)));
+    let corners = Corners::Quad(corners.map(|corner| vertex(scene, corner)));
+    add_surface(scene, material, corners);
+}
+
+/// Adds a triangle in the same way.
+#[allow(dead_code, reason = "not every test binary has triangles")]
+pub fn add_triangle(scene: &mut Scene, material: u32, corners: [DVec3; 3]) {
+    let corners = Corners::Triangle(corners.map(|corner| vertex(scene, corner)));
+    add_surface(scene, material, corners);
+}
+
+/// The number of a vertex, added if it is not there yet.
+fn vertex(scene: &mut Scene, place: DVec3) -> u32 {
+    let known = scene.vertices.iter().position(|v| *v == place);
+    known.unwrap_or_else(|| {
+        scene.vertices.push(place);
+        scene.vertices.len() - 1
+    }) as u32
+}
+
+fn add_surface(scene: &mut Scene, material: u32, corners: Corners) {
     let polygon = scene.input_polygons as u32;
     scene.surfaces.push(Surface {
         corners,

@@ -66,7 +66,7 @@ fn l_shaped() -> Scene {
 }
 
 /// The largest relative error of the radiosity at any vertex.
-fn error(solution: &Solution) -> f64 {
+pub(super) fn error(solution: &Solution) -> f64 {
     let exact = f64::from(EXITANCE / (1.0 - REFLECTANCE));
     let radiosity = |e: &glam::Vec3| f64::from(EXITANCE) + f64::from(REFLECTANCE) * e.as_dvec3();
     let errors = solution

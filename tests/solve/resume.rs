@@ -23,7 +23,7 @@ impl Observer for Batches {
     }
 }
 
-fn settings(options: Options, engine: EngineChoice, threads: usize) -> Settings {
+pub(super) fn settings(options: Options, engine: EngineChoice, threads: usize) -> Settings {
     Settings {
         options,
         engine,
@@ -33,7 +33,7 @@ fn settings(options: Options, engine: EngineChoice, threads: usize) -> Settings 
 }
 
 /// Solves in sessions of so many batches; between them there is nothing but the file. Returns the number of sessions as well.
-fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> (Solution, usize) {
+pub(super) fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> (Solution, usize) {
     let mut run = Run::new(scene.clone(), how.clone()).expect("can be solved");
     for session in 1.. {
         let reason = run.go(&mut Batches(batches)).expect("can be solved");

@@ -31,6 +31,18 @@ struct Part {
     rays: u32,
 }
 
+/// Parts that are too small for a ray each: one ray, to one of them drawn in proportion to what they give, answers for all.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pool {
+    contribution: Spectrum,
+    measure: f64,
+    target: Vec3,
+    draws: u32,
+}
+
+/// What is pooled for one ray gives at least this part of ε_fe.
+const POOLED: f64 = 0.25;
+
 /// Memory of a thread, reused between blocks.
 #[derive(Default)]
 pub struct ClusterScratch {
@@ -74,6 +86,7 @@ impl Sampler<'_> {
             let limits = self.cluster_limits(clusters, receiver, settled, &mut scratch.pending);
             scratch.targets.clear();
             Cut {
+                pool: Pool::default(),
                 sampler: self,
                 clusters,
                 receiver,
@@ -276,6 +289,7 @@ struct Cut<'a> {
     receiver: &'a Receiver,
     key: u32,
     limits: Limits,
+    pool: Pool,
 }
 
 impl Cut<'_> {
@@ -295,11 +309,8 @@ impl Cut<'_> {
             };
             if self.is_fine(&view) {
                 if view.measure > 0.0 {
-                    scratch.parts.push(Part {
-                        contribution: view.contribution,
-                        rays: 1,
-                    });
-                    scratch.targets.push(self.clusters.target(number, point));
+                    let target = self.clusters.target(number, point);
+                    self.take_one(view.contribution, target, scratch);
                 }
             } else if let Children::Two(second) = node.children {
                 scratch.pending.extend([second, number + 1]);
@@ -312,6 +323,38 @@ impl Cut<'_> {
                 self.limits.difference *= 2.0;
                 self.limits.estimate *= 2.0;
             }
+        }
+        self.empty_pool(scratch);
+    }
+
+    /// Adds a part of one ray, by itself or to the pool.
+    fn take_one(&mut self, contribution: Spectrum, target: Vec3, scratch: &mut ClusterScratch) {
+        let measure = f64::from(contribution.max_element());
+        let pool = &mut self.pool;
+        pool.contribution += contribution;
+        pool.measure += measure;
+        pool.draws += 1;
+        if pool.draws == 1 || jitter(self.key, !pool.draws)[0] * pool.measure < measure {
+            pool.target = target;
+        }
+        if pool.measure >= POOLED * self.limits.estimate {
+            self.empty_pool(scratch);
+        }
+    }
+
+    fn empty_pool(&mut self, scratch: &mut ClusterScratch) {
+        let Pool {
+            contribution,
+            target,
+            draws,
+            ..
+        } = std::mem::take(&mut self.pool);
+        if draws > 0 {
+            scratch.parts.push(Part {
+                contribution,
+                rays: 1,
+            });
+            scratch.targets.push(target);
         }
     }
 
@@ -338,7 +381,7 @@ impl Cut<'_> {
         }
     }
 
-    fn take_tile(&self, number: u32, scratch: &mut ClusterScratch) {
+    fn take_tile(&mut self, number: u32, scratch: &mut ClusterScratch) {
         let radiosity = self.clusters.radiosity[number as usize];
         if radiosity.max_element() <= 0.0 {
             return;
@@ -360,18 +403,21 @@ impl Cut<'_> {
         let side = (measure / self.limits.estimate).sqrt().ceil();
         let side = (side as u32).clamp(1, MOST_RAYS);
         let cut = sight.cut.then(|| above_horizon(*self.receiver, &cell));
-        for ray in 0..side * side {
-            let [s, t] = jitter(self.key, number ^ ray.wrapping_mul(0x9e37_79b9));
+        let (receiver, key, extent) = (self.receiver, self.key, self.sampler.extent);
+        let aim = |ray: u32| {
+            let [s, t] = jitter(key, number ^ ray.wrapping_mul(0x9e37_79b9));
             let place = |i: u32, x: f64| (f64::from(i) + 0.05 + 0.9 * x) / f64::from(side);
             let (s, t) = (place(ray % side, s), place(ray / side, t));
             let point: DVec3 = match &cut {
-                Some(cut) => self.receiver.point + point_in_cut(cut, s, t),
+                Some(cut) => receiver.point + point_in_cut(cut, s, t),
                 None => cell.at(s, t),
             };
-            scratch
-                .targets
-                .push(lift(point, normal, self.sampler.extent).as_vec3());
+            lift(point, normal, extent).as_vec3()
+        };
+        if side == 1 {
+            return self.take_one(contribution, aim(0), scratch);
         }
+        scratch.targets.extend((0..side * side).map(aim));
         scratch.parts.push(Part {
             contribution,
             rays: side * side,
