@@ -73,8 +73,8 @@ pub(super) struct Watch {
     pub seen: Option<Instant>,
     /// How the solve went so far.
     pub history: History,
-    /// Shots of the rounds before this one.
-    earlier: u64,
+    /// The rounds before this one, and their shots.
+    earlier: (usize, u64),
 }
 
 impl Watch {
@@ -89,7 +89,7 @@ impl Watch {
             due: None,
             seen: None,
             history: History::default(),
-            earlier: 0,
+            earlier: (0, 0),
         }
     }
 
@@ -103,10 +103,11 @@ impl Watch {
     /// Shots of all rounds, where the round that is under way has so many.
     fn counted(&mut self, shots: u64) -> u64 {
         let last = self.history.moments.last().map_or(0, |last| last.shots);
-        if self.earlier + shots < last {
-            self.earlier = last;
+        let (rounds, before) = self.earlier;
+        if before + shots < last {
+            self.earlier = (rounds + 1, last);
         }
-        self.earlier + shots
+        self.earlier.1 + shots
     }
 
     fn show(&mut self, now: &Progress, unshot: f64) {
@@ -205,6 +206,7 @@ impl Observer for Watch {
         if matches!(now.phase, Phase::Shooting | Phase::Refining) {
             let shots = self.counted(now.shots);
             self.history.moments.push(Moment {
+                round: self.earlier.0,
                 shots,
                 seconds: now.elapsed.as_secs_f64(),
                 unshot,
@@ -220,7 +222,7 @@ impl Observer for Watch {
 
     fn estimated(&mut self, found: &Estimate) {
         self.history.estimates.push(Estimated {
-            shots: self.earlier + found.shots,
+            shots: self.earlier.1 + found.shots,
             seconds: found.elapsed.as_secs_f64(),
             n_rms: found.n_rms,
         });

@@ -11,6 +11,8 @@ use std::path::Path;
 /// A moment of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
+    /// Rounds that were complete, on the way to a target.
+    pub round: usize,
     /// Shots that were complete.
     pub shots: u64,
     /// Seconds since the start.
@@ -203,11 +205,18 @@ impl Page<'_> {
 
     fn convergence(&self) -> String {
         let History { moments, estimates } = self.history;
-        let moments = thinned(moments);
+        let rounds: Vec<Vec<&Moment>> = moments
+            .chunk_by(|a, b| a.round == b.round)
+            .map(thinned)
+            .collect();
+        let curves = |x: fn(&Moment) -> f64| {
+            let curve = |round: &Vec<&Moment>| round.iter().map(|m| (x(m), m.unshot)).collect();
+            rounds.iter().map(curve).collect()
+        };
         let shots = Plot {
             across: "shots",
             up: "unshot power",
-            points: moments.iter().map(|m| (m.shots as f64, m.unshot)).collect(),
+            curves: curves(|m| m.shots as f64),
             marks: estimates
                 .iter()
                 .map(|e| (e.shots as f64, e.n_rms))
@@ -216,7 +225,7 @@ impl Page<'_> {
         };
         let seconds = Plot {
             across: "seconds",
-            points: moments.iter().map(|m| (m.seconds, m.unshot)).collect(),
+            curves: curves(|m| m.seconds),
             marks: estimates.iter().map(|e| (e.seconds, e.n_rms)).collect(),
             ..shots.clone()
         };

@@ -10,14 +10,14 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
-/// A curve that falls over decades, and points beside it.
+/// Curves that fall over decades, and points beside them.
 #[derive(Clone)]
 pub(super) struct Plot<'a> {
     /// What the horizontal axis is.
     pub across: &'a str,
     /// What the vertical axis is, a fraction.
     pub up: &'a str,
-    pub points: Vec<(f64, f64)>,
+    pub curves: Vec<Vec<(f64, f64)>>,
     /// Points of another quantity, a fraction too.
     pub marks: Vec<(f64, f64)>,
     /// What that is.
@@ -27,11 +27,12 @@ pub(super) struct Plot<'a> {
 impl Plot<'_> {
     /// The plot as an `svg` element; empty if there is nothing to draw.
     pub fn svg(&self) -> String {
-        let (points, marks) = (drawn(&self.points), drawn(&self.marks));
-        let all = || points.iter().chain(&marks);
+        let curves: Vec<Vec<(f64, f64)>> = self.curves.iter().map(|curve| drawn(curve)).collect();
+        let marks = drawn(&self.marks);
+        let all = || curves.iter().flatten().chain(&marks);
         let least = all().map(|p| p.1).fold(f64::INFINITY, f64::min);
         let end = all().map(|p| p.0).fold(0.0, f64::max);
-        if points.is_empty() || end <= 0.0 {
+        if curves.iter().all(Vec::is_empty) || end <= 0.0 {
             return String::new();
         }
         let decades = (-least.max(1e-12).log10()).ceil().clamp(1.0, 12.0);
@@ -41,11 +42,10 @@ impl Plot<'_> {
             self.up, self.across
         );
         self.axes(&mut svg, &scale);
-        let _ = writeln!(
-            svg,
-            "<polyline class=\"curve\" points=\"{}\"/>",
-            scale.line(&points)
-        );
+        for curve in &curves {
+            let line = scale.line(curve);
+            let _ = writeln!(svg, "<polyline class=\"curve\" points=\"{line}\"/>");
+        }
         self.mark(&mut svg, &scale, &marks);
         svg + "</svg>\n"
     }
@@ -69,7 +69,7 @@ impl Plot<'_> {
             svg,
             "<text class=\"mark\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{} {:.2} %</text>",
             scale.x(x) - 7.0,
-            scale.y(y) - 6.0,
+            scale.y(y) + 14.0,
             self.name,
             100.0 * y
         );
