@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use radiosity::output::{GlbFacts, write_glb};
 use radiosity::radiometry::radiance_from_radiosity;
 use radiosity::render::Tone;
-use radiosity::scene::{Camera, Corners, Material, Scene, Sides, Surface};
+use radiosity::scene::{Camera, Corners, Material, Names, Scene, Sides, Surface};
 use radiosity::solver::{Preset, Silent};
 use radiosity::{Settings, solve};
 use std::error::Error;
@@ -82,7 +82,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .unwrap_or_else(|| "table.glb".into());
     let mesh = solution.lit_mesh();
     let tone = Tone::for_mesh(&mesh);
+    let names = Names::default();
     let facts = GlbFacts {
+        names: &names,
         name: &scene.name,
         metres_per_unit: scene.metres_per_unit,
         cameras: &scene.cameras,

@@ -15,6 +15,7 @@
 //! * [`matrix`]: form factors between all surfaces, for exchange rather than pictures
 //! * [`codec`]: base64, PNG and JPEG
 //! * [`solution`]: the result, probing, its report and file; [`output`], [`render`]: files and pictures
+//! * `viewer`: a window, with the feature of that name
 //!
 //! # Conventions
 //!
@@ -45,6 +46,8 @@ pub mod scene;
 pub mod solution;
 pub mod solver;
 mod threads;
+#[cfg(feature = "viewer")]
+pub mod viewer;
 pub mod visibility;
 
 pub use pipeline::{Run, Settings, SolveError, Target, irradiance_at, solve};

@@ -9,6 +9,9 @@ use crate::visibility::VisibilityError;
 use std::process::ExitCode;
 use thiserror::Error;
 
+#[cfg(feature = "viewer")]
+use crate::viewer::WindowError;
+
 /// How the process ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -41,6 +44,9 @@ pub(super) enum CliError {
     Visibility(#[from] VisibilityError),
     #[error(transparent)]
     Write(#[from] WriteError),
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    Window(#[from] WindowError),
     /// An input that is not a scene or solution.
     #[error("{0}")]
     Input(String),

@@ -31,6 +31,23 @@ Examples:
   radiosity render out                             the scene's cameras once more
   radiosity render out --eye 278,273,-800 --look-at 278,273,0 --exposure 1 -o pictures";
 
+pub(super) const VIEW: &str = "\
+Examples:
+  radiosity view out                               from the scene's first camera
+  radiosity view out --camera door --width 1280 --height 800
+  radiosity view out/solution.ply                  without names and cameras
+
+Mouse and keys:
+  left drag        circle what is in the middle    wheel            closer, farther
+  right drag       turn the head                   click            read the light there (in the title, on standard output)
+  W A S D, up, down        walk (shift: faster)    left, right      turn
+  page up, page down       rise, sink              Home             back to the camera
+  + -              brighter, darker; in false colours a shorter or longer scale
+  0                exposure as the program chooses it
+  F                light, illuminance (lx), radiosity (W/m2)
+  E                the elements                    C                the next camera
+  Q, Escape        the end";
+
 pub(super) const PROBE: &str = "\
 Examples:
   radiosity probe out points.csv -o lit.csv        points on surfaces

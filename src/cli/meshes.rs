@@ -1,6 +1,7 @@
 //! The lit mesh of a solution in the formats that other programs read.
 
 use super::CliError;
+use super::names::names_of;
 use crate::output::{GlbFacts, VtuFacts, write_glb, write_obj, write_ply, write_vtu};
 use crate::radiometry::radiance_from_radiosity;
 use crate::render::Tone;
@@ -126,10 +127,12 @@ impl Exporter<'_> {
 
     fn glb(&self, path: &Path) -> Result<(), CliError> {
         let two_sided = self.two_sided();
+        let names = names_of(self.solution);
         let facts = GlbFacts {
             name: &self.solution.report.scene,
             metres_per_unit: self.solution.metres_per_unit,
             cameras: &self.solution.cameras,
+            names: &names,
             exposure: self.tone.exposure(),
             two_sided: &two_sided,
         };

@@ -10,6 +10,7 @@ mod heat;
 mod info;
 mod memory;
 mod meshes;
+mod names;
 mod pictures;
 mod probe;
 mod progress;
@@ -20,6 +21,10 @@ mod session;
 mod shell;
 mod solve;
 mod values;
+mod view;
+mod viewpoint;
+#[cfg(feature = "viewer")]
+mod window;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use error::CliError;
@@ -45,6 +50,9 @@ enum Command {
     /// Draw pictures of a solution.
     #[command(after_help = examples::RENDER)]
     Render(render::Arguments),
+    /// Walk through a solution in a window, and read its light.
+    #[command(after_help = examples::VIEW)]
+    View(view::Arguments),
     /// Read the light at points of a solution.
     #[command(after_help = examples::PROBE)]
     Probe(probe::Arguments),
@@ -78,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Resume(arguments) => resume::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::FormFactors(arguments) => form_factors::run(&arguments),

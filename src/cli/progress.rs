@@ -2,8 +2,8 @@
 
 use super::say;
 use super::say::is_quiet;
-use crate::output::{Moment, abandon_drafts};
-use crate::solver::{Control, Observer, Phase, Progress};
+use crate::output::{Estimated, History, Moment, abandon_drafts};
+use crate::solver::{Control, Estimate, Observer, Phase, Progress};
 use clap::ValueEnum;
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -69,8 +69,12 @@ pub(super) struct Watch {
     told: Option<Instant>,
     /// When the solve is to be left for a checkpoint.
     pub due: Option<Instant>,
+    /// When it is to be left for somebody to see it.
+    pub seen: Option<Instant>,
     /// How the solve went so far.
-    pub history: Vec<Moment>,
+    pub history: History,
+    /// The rounds before this one, and their shots.
+    earlier: (usize, u64),
 }
 
 impl Watch {
@@ -83,7 +87,9 @@ impl Watch {
             tolerance: tolerance.clamp(1e-9, 0.5),
             told: None,
             due: None,
-            history: Vec::new(),
+            seen: None,
+            history: History::default(),
+            earlier: (0, 0),
         }
     }
 
@@ -92,6 +98,16 @@ impl Watch {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+
+    /// Shots of all rounds, where the round that is under way has so many.
+    fn counted(&mut self, shots: u64) -> u64 {
+        let last = self.history.moments.last().map_or(0, |last| last.shots);
+        let (rounds, before) = self.earlier;
+        if before + shots < last {
+            self.earlier = (rounds + 1, last);
+        }
+        self.earlier.1 + shots
     }
 
     fn show(&mut self, now: &Progress, unshot: f64) {
@@ -177,23 +193,38 @@ fn line(now: &Progress, unshot: f64, done: f64) -> serde_json::Value {
     })
 }
 
+/// Whether a time has come.
+pub(super) fn is_due(when: Option<Instant>) -> bool {
+    when.is_some_and(|when| Instant::now() >= when)
+}
+
 impl Observer for Watch {
     fn progress(&mut self, now: &Progress) -> Control {
         let emitted = now.emitted.element_sum().max(f64::MIN_POSITIVE);
         let unshot = now.unshot.element_sum() / emitted;
         self.show(now, unshot);
         if matches!(now.phase, Phase::Shooting | Phase::Refining) {
-            self.history.push(Moment {
-                shots: now.shots,
+            let shots = self.counted(now.shots);
+            self.history.moments.push(Moment {
+                round: self.earlier.0,
+                shots,
                 seconds: now.elapsed.as_secs_f64(),
                 unshot,
                 elements: now.elements,
             });
         }
-        if is_interrupted() || self.due.is_some_and(|due| Instant::now() >= due) {
+        if is_interrupted() || [self.due, self.seen].into_iter().any(is_due) {
             Control::Stop
         } else {
             Control::Continue
         }
+    }
+
+    fn estimated(&mut self, found: &Estimate) {
+        self.history.estimates.push(Estimated {
+            shots: self.earlier.1 + found.shots,
+            seconds: found.elapsed.as_secs_f64(),
+            n_rms: found.n_rms,
+        });
     }
 }

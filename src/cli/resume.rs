@@ -31,7 +31,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
-    arguments.how.begin();
+    let watching = arguments.how.begin()?;
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         started,
         known_warnings: before.warnings.len(),
     };
-    session.complete(run)
+    session.complete(run, watching)
 }
 
 /// The checkpoint, or the solution where there is none.

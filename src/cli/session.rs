@@ -2,7 +2,7 @@
 
 use super::CliError;
 use super::error::Code;
-use super::progress::{Look, Watch, is_interrupted};
+use super::progress::{Look, Watch, is_due, is_interrupted};
 use super::say::{self, is_quiet};
 use super::solve::{How, summary, write};
 use crate::Run;
@@ -12,10 +12,16 @@ use crate::solver::{MeshingEnd, StopReason};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+#[cfg(feature = "viewer")]
+pub(super) use super::window::Watching;
+
 /// The state of a run that has not ended; `radiosity resume` reads it.
 pub(super) const CHECKPOINT: &str = "checkpoint.rad";
 
-/// Checkpoints take at most this share of the time: where writing one takes longer, they become fewer.
+/// Who looks on sees no more than this often what has become of the light.
+const FRAME: Duration = Duration::from_millis(100);
+
+/// Checkpoints take at most this share of the time, and so do pictures: where one takes longer, they become fewer.
 const SHARE: f64 = 0.05;
 
 /// Where the results go, and how they are come by.
@@ -27,16 +33,54 @@ pub(super) struct Session<'a> {
     pub known_warnings: usize,
 }
 
+/// Somebody who looks on while a solve converges.
+pub(super) trait Audience {
+    /// Whether there is still somebody.
+    fn is_there(&self) -> bool;
+    /// Shows what there is.
+    fn see(&self, so_far: &Solution);
+}
+
+/// A window that this program cannot open.
+#[cfg(not(feature = "viewer"))]
+pub(super) enum Watching {}
+
+#[cfg(not(feature = "viewer"))]
+impl Watching {
+    pub fn new() -> Result<Self, CliError> {
+        Err(super::view::without_window())
+    }
+
+    fn around(self, _: &Session, _: Run) -> Result<Code, CliError> {
+        match self {}
+    }
+}
+
 impl Session<'_> {
-    /// Goes on to the end, or until it is interrupted, and writes what there is.
-    pub fn complete(&self, mut run: Run) -> Result<Code, CliError> {
+    /// Goes on to the end, or until it is interrupted, and writes what there is; in a window if there is to be one.
+    pub fn complete(&self, run: Run, watching: Option<Watching>) -> Result<Code, CliError> {
+        match watching {
+            Some(window) => window.around(self, run),
+            None => self.finish(run, None),
+        }
+    }
+
+    /// The same, before an audience. What it sees does not change what is computed.
+    pub fn finish(&self, mut run: Run, audience: Option<&dyn Audience>) -> Result<Code, CliError> {
         let look = self.how.look();
         let mut bar = Watch::new(run.solution().report.options.tolerance, look);
         if let Some(interval) = self.how.checkpoint {
             let took = self.save(run.solution())?;
             bar.due = Some(next(interval, took));
         }
+        bar.seen = audience.map(|_| Instant::now());
         while run.go(&mut bar)? == StopReason::Interrupted && !is_interrupted() {
+            if is_due(bar.seen) {
+                bar.seen = present(audience, run.solution());
+            }
+            if !is_due(bar.due) {
+                continue;
+            }
             bar.due = self.how.checkpoint.map(|interval| {
                 // A solve is worth more than its checkpoint: what cannot be saved now may be saved later.
                 let took = self.save(run.solution()).unwrap_or_else(|error| {
@@ -52,6 +96,7 @@ impl Session<'_> {
             self.save(state)?;
         }
         let mut solution = run.finish();
+        present(audience, &solution);
         self.warn(&solution);
         write(&mut solution, self.output, self.how, &bar.history)?;
         if !is_left {
@@ -112,7 +157,15 @@ impl Session<'_> {
     }
 }
 
-/// When the next checkpoint is due, if the last one took so long.
+/// Shows what there is; says when to show more, if anybody is there.
+fn present(audience: Option<&dyn Audience>, so_far: &Solution) -> Option<Instant> {
+    let started = Instant::now();
+    let audience = audience.filter(|audience| audience.is_there())?;
+    audience.see(so_far);
+    Some(next(FRAME, started.elapsed()))
+}
+
+/// When the next checkpoint or picture is due, if the last one took so long.
 fn next(interval: Duration, took: Duration) -> Instant {
     Instant::now() + interval.max(took.div_f64(SHARE))
 }

@@ -8,10 +8,10 @@ use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
 use super::progress::{Look, catch_interrupts};
 use super::say;
-use super::session::Session;
+use super::session::{Session, Watching};
 use super::values::duration;
 use crate::output::{
-    Moment, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
+    History, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
 };
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::{RenderOptions, Tone};
@@ -66,6 +66,9 @@ pub(super) struct How {
     /// How progress is shown
     #[arg(long, value_enum, value_name = "LOOK", default_value = "auto")]
     progress: Look,
+    /// Show the solution in a window while it converges (feature `viewer`); closing it lets the solve go on, Ctrl-C ends it
+    #[arg(long)]
+    watch: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
@@ -80,17 +83,18 @@ impl How {
         self.progress
     }
 
-    /// Takes note of `--quiet`.
-    pub(super) fn begin(&self) {
+    /// Takes note of `--quiet`, and finds out whether there can be a window where one is asked for.
+    pub(super) fn begin(&self) -> Result<Option<Watching>, CliError> {
         if self.quiet {
             say::be_quiet();
         }
+        self.watch.then(Watching::new).transpose()
     }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
-    arguments.how.begin();
+    let watching = arguments.how.begin()?;
     let model = arguments.from.as_deref().map(read_report).transpose()?;
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
@@ -125,7 +129,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         started,
         known_warnings: known,
     };
-    session.complete(run)
+    session.complete(run, watching)
 }
 
 fn read_report(path: &Path) -> Result<Report, CliError> {
@@ -188,7 +192,7 @@ pub(super) fn write(
     solution: &mut Solution,
     folder: &Path,
     how: &How,
-    history: &[Moment],
+    history: &History,
 ) -> Result<(), CliError> {
     let started = Instant::now();
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
@@ -237,7 +241,7 @@ fn write_page(
     solution: &Solution,
     folder: &Path,
     how: &How,
-    history: &[Moment],
+    history: &History,
 ) -> Result<(), CliError> {
     let camera = solution.cameras.first().map_or("", |camera| &camera.name);
     let mut pictures = Vec::new();

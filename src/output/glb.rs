@@ -2,9 +2,10 @@
 
 use super::blocks::{Block, floats, indices, needs_double, offsets};
 use super::{WriteError, write_atomically};
-use crate::scene::Camera;
+use crate::scene::{Camera, Names};
 use crate::solution::{LitMesh, LitVertex};
 use glam::{DVec3, Vec3};
+use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::Path;
@@ -24,6 +25,8 @@ pub struct GlbFacts<'a> {
     pub metres_per_unit: f64,
     /// The cameras to hand on.
     pub cameras: &'a [Camera],
+    /// What the polygons belong to: each group becomes a mesh with a node of its name.
+    pub names: &'a Names,
     /// Stops of the exposure that is baked into the colours, for the file to state.
     pub exposure: f64,
     /// By vertex whether it is on one side of a sheet that radiates from both; may be empty, if there are none.
@@ -34,12 +37,12 @@ pub struct GlbFacts<'a> {
 /// show both in one place.
 const APART: f64 = 1e-5;
 
-/// Writes one mesh of triangles in metres, y up, that any glTF viewer shows lit.
+/// Writes triangles in metres, y up, that any glTF viewer shows lit: a mesh for each group of polygons, or one.
 ///
 /// `COLOR_0` is `display` of the vertex, linear and from 0 to 1, in 16 bits; the material is unlit
 /// (`KHR_materials_unlit`), so nothing is shaded once more. The light itself is in the attributes `_RADIOSITY` and
-/// `_IRRADIANCE` (W/m², linear Rec. 709, float), and the mesh's `extras` state quantities, units and exposure. A scene far
-/// from its origin is moved there by the translation of its node, as glTF knows single precision only.
+/// `_IRRADIANCE` (W/m², linear Rec. 709, float), and the meshes' `extras` state quantities, units and exposure. A scene far
+/// from its origin is moved there by the translation of its nodes, as glTF knows single precision only.
 ///
 /// # Errors
 /// When the file cannot be written, or would exceed the 4 GiB of the format.
@@ -53,9 +56,10 @@ pub fn write_glb(
     display: impl Fn(&LitVertex) -> Vec3,
 ) -> Result<(), WriteError> {
     let places = Places::of(mesh, facts);
-    let blocks = blocks(mesh, &places, &display);
+    let objects = objects(mesh, facts);
+    let blocks = blocks(mesh, &places, &objects, &display);
     write_atomically(path, |out| {
-        let mut text = document(mesh, facts, &places, &blocks).to_string();
+        let mut text = document(mesh, facts, &places, &objects, &blocks).to_string();
         while !text.len().is_multiple_of(4) {
             text.push(' ');
         }
@@ -125,10 +129,34 @@ fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     })
 }
 
-/// Position, normal, colour, radiosity, irradiance, indices.
+/// Triangles of one group of polygons.
+struct Object<'a> {
+    name: &'a str,
+    /// Indices into the mesh's triangles.
+    triangles: Vec<u32>,
+}
+
+/// The groups in the order in which triangles come to them; those of none have the scene's name.
+fn objects<'a>(mesh: &LitMesh, facts: &GlbFacts<'a>) -> Vec<Object<'a>> {
+    let mut objects: Vec<Object> = Vec::new();
+    let mut numbers: FxHashMap<&str, usize> = FxHashMap::default();
+    for (number, triangle) in (0..).zip(&mesh.triangles) {
+        let name = facts.names.group(triangle.polygon).unwrap_or(facts.name);
+        let object = *numbers.entry(name).or_insert_with(|| {
+            let triangles = Vec::new();
+            objects.push(Object { name, triangles });
+            objects.len() - 1
+        });
+        objects[object].triangles.push(number);
+    }
+    objects
+}
+
+/// Of all vertices position, normal, colour, radiosity and irradiance; then the indices of each object.
 fn blocks<'a>(
     mesh: &'a LitMesh,
     places: &'a Places<'a>,
+    objects: &'a [Object],
     display: &'a impl Fn(&LitVertex) -> Vec3,
 ) -> Vec<Block<'a>> {
     let (vertices, count) = (|| mesh.vertices.iter(), mesh.vertices.len());
@@ -138,46 +166,62 @@ fn blocks<'a>(
             .map(|x| ((65535.0 * x.clamp(0.0, 1.0)).round() as u16).to_le_bytes());
         [r[0], r[1], g[0], g[1], b[0], b[1], 255, 255]
     };
-    vec![
+    let of_vertices = [
         Block::new(count, move || places.all(mesh).map(floats)),
         Block::new(count, move || vertices().map(|v| floats(v.normal))),
         Block::new(count, move || vertices().map(colour)),
         Block::new(count, move || vertices().map(|v| floats(v.radiosity))),
         Block::new(count, move || vertices().map(|v| floats(v.irradiance))),
-        Block::new(mesh.triangles.len(), move || {
-            mesh.triangles.iter().map(|t| indices(t.vertices))
-        }),
-    ]
+    ];
+    let corners = objects.iter().map(|object| {
+        Block::new(object.triangles.len(), move || {
+            let triangles = object.triangles.iter();
+            triangles.map(|t| indices(mesh.triangles[*t as usize].vertices))
+        })
+    });
+    of_vertices.into_iter().chain(corners).collect()
 }
 
+/// Blocks before those of the objects.
+const VERTEX_BLOCKS: usize = 5;
+
 /// The JSON of the file.
-fn document(mesh: &LitMesh, facts: &GlbFacts, places: &Places, blocks: &[Block]) -> Value {
+fn document(
+    mesh: &LitMesh,
+    facts: &GlbFacts,
+    places: &Places,
+    objects: &[Object],
+    blocks: &[Block],
+) -> Value {
+    let nodes = nodes(facts, places, objects);
     let mut document = json!({
         "asset": {
             "version": "2.0",
             "generator": concat!("radiosity ", env!("CARGO_PKG_VERSION")),
         },
         "scene": 0,
-        "scenes": [{ "name": facts.name, "nodes": Vec::from_iter(0..=facts.cameras.len()) }],
-        "nodes": nodes(facts, places),
+        "scenes": [{ "name": facts.name, "nodes": Vec::from_iter(0..nodes.len()) }],
+        "nodes": nodes,
     });
     if !facts.cameras.is_empty() {
         document["cameras"] = facts.cameras.iter().map(|c| camera(c, facts)).collect();
     }
     // glTF has no empty arrays: a mesh without triangles is left out.
-    if !mesh.triangles.is_empty() {
-        document["nodes"][0]["mesh"] = json!(0);
+    if !objects.is_empty() {
         document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
         document["materials"] = json!([{
             "name": "radiosity",
             "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 1 },
             "extensions": { "KHR_materials_unlit": {} },
         }]);
-        document["meshes"] = json!([described_mesh(facts)]);
-        document["accessors"] = accessors(mesh, places);
+        let meshes = objects.iter().enumerate();
+        document["meshes"] = meshes
+            .map(|(n, object)| described(n, object, facts))
+            .collect();
+        document["accessors"] = accessors(mesh, places, objects);
         let (begins, end) = offsets(blocks, 0);
         let target = |view| {
-            if view < 5 {
+            if view < VERTEX_BLOCKS {
                 ARRAY_BUFFER
             } else {
                 ELEMENT_ARRAY_BUFFER
@@ -192,14 +236,14 @@ fn document(mesh: &LitMesh, facts: &GlbFacts, places: &Places, blocks: &[Block])
     document
 }
 
-fn described_mesh(facts: &GlbFacts) -> Value {
+fn described(number: usize, object: &Object, facts: &GlbFacts) -> Value {
     json!({
-        "name": facts.name,
+        "name": object.name,
         "primitives": [{
             "attributes": {
                 "POSITION": 0, "NORMAL": 1, "COLOR_0": 2, "_RADIOSITY": 3, "_IRRADIANCE": 4,
             },
-            "indices": 5,
+            "indices": VERTEX_BLOCKS + number,
             "material": 0,
         }],
         "extras": {
@@ -213,31 +257,44 @@ fn described_mesh(facts: &GlbFacts) -> Value {
     })
 }
 
-fn accessors(mesh: &LitMesh, places: &Places) -> Value {
-    let (vertices, corners) = (mesh.vertices.len(), 3 * mesh.triangles.len());
+fn accessors(mesh: &LitMesh, places: &Places, objects: &[Object]) -> Value {
+    let vertices = mesh.vertices.len();
     let (low, high) = bounds(places.all(mesh).map(|place| place.as_dvec3()));
     let vectors = |view| json!({ "bufferView": view, "componentType": FLOAT, "count": vertices, "type": "VEC3" });
     let mut positions = vectors(0);
     positions["min"] = json!(low.to_array());
     positions["max"] = json!(high.to_array());
-    json!([
+    let of_vertices = [
         positions,
         vectors(1),
-        {
+        json!({
             "bufferView": 2, "componentType": UNSIGNED_SHORT, "normalized": true,
             "count": vertices, "type": "VEC4",
-        },
+        }),
         vectors(3),
         vectors(4),
-        { "bufferView": 5, "componentType": UNSIGNED_INT, "count": corners, "type": "SCALAR" },
-    ])
+    ];
+    let corners = objects.iter().zip(VERTEX_BLOCKS..).map(|(object, view)| {
+        let count = 3 * object.triangles.len();
+        json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" })
+    });
+    of_vertices.into_iter().chain(corners).collect()
 }
 
-/// The mesh's node, then one for each camera.
-fn nodes(facts: &GlbFacts, places: &Places) -> Value {
-    let mut lit = json!({ "name": facts.name });
+/// A node for each object, at least one, then one for each camera.
+fn nodes(facts: &GlbFacts, places: &Places, objects: &[Object]) -> Vec<Value> {
+    let mut lit: Vec<Value> = objects
+        .iter()
+        .enumerate()
+        .map(|(mesh, object)| json!({ "name": object.name, "mesh": mesh }))
+        .collect();
+    if lit.is_empty() {
+        lit.push(json!({ "name": facts.name }));
+    }
     if places.origin != DVec3::ZERO {
-        lit["translation"] = json!((places.origin * places.metres).to_array());
+        let origin = (places.origin * places.metres).to_array();
+        lit.iter_mut()
+            .for_each(|node| node["translation"] = json!(origin));
     }
     let cameras = facts.cameras.iter().zip(0..).map(|(camera, number)| {
         // A glTF camera looks along its own -z, with its y up.
@@ -250,7 +307,7 @@ fn nodes(facts: &GlbFacts, places: &Places) -> Value {
             .collect();
         json!({ "name": camera.name, "camera": number, "matrix": matrix })
     });
-    std::iter::once(lit).chain(cameras).collect()
+    lit.into_iter().chain(cameras).collect()
 }
 
 fn camera(camera: &Camera, facts: &GlbFacts) -> Value {

@@ -11,6 +11,8 @@ use std::path::Path;
 /// A moment of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
+    /// Rounds that were complete, on the way to a target.
+    pub round: usize,
     /// Shots that were complete.
     pub shots: u64,
     /// Seconds since the start.
@@ -21,13 +23,33 @@ pub struct Moment {
     pub elements: usize,
 }
 
+/// An estimate of the error, and when it was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimated {
+    /// Shots that were complete.
+    pub shots: u64,
+    /// Seconds since the start.
+    pub seconds: f64,
+    /// Estimated RMS error of the irradiance over its mean.
+    pub n_rms: f64,
+}
+
+/// How a solve went. Where several rounds led to a target, one follows the other, and their shots are added up.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct History {
+    /// In order; may be empty.
+    pub moments: Vec<Moment>,
+    /// In order; may be empty.
+    pub estimates: Vec<Estimated>,
+}
+
 /// What the page shows.
 #[derive(Debug, Clone, Copy)]
 pub struct Page<'a> {
     /// The facts.
     pub report: &'a Report,
-    /// How the solve went, in order; may be empty.
-    pub history: &'a [Moment],
+    /// How the solve went.
+    pub history: &'a History,
     /// PNG files with their captions.
     pub pictures: &'a [(String, Vec<u8>)],
     /// Files that were written beside the page.
@@ -40,7 +62,7 @@ table{border-collapse:collapse;margin:.5rem 0}td,th{padding:.15rem .9rem .15rem 
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}figure{margin:1rem 0}img{max-width:100%;height:auto}\
 figcaption{color:#666}.plots{display:flex;flex-wrap:wrap;gap:1rem}.plots svg{width:28rem;max-width:100%}\
 svg text{font:11px sans-serif;fill:#444}svg .grid{stroke:#e4e4e4}svg .curve{fill:none;stroke:#21618c;stroke-width:2}\
-svg line.mark{stroke:#b03a2e;stroke-dasharray:5 4}svg text.mark{fill:#b03a2e}.warning{color:#8a4b00}";
+svg .marks{fill:none;stroke:#b03a2e;stroke-dasharray:5 4}svg circle.mark,svg text.mark{fill:#b03a2e}.warning{color:#8a4b00}";
 
 /// Writes the page. It is well-formed XML, too.
 ///
@@ -182,29 +204,32 @@ impl Page<'_> {
     }
 
     fn convergence(&self) -> String {
-        let curve = |x: fn(&Moment) -> f64| -> Vec<(f64, f64)> {
-            let moments = thinned(self.history).into_iter();
-            moments.map(|moment| (x(moment), moment.unshot)).collect()
+        let History { moments, estimates } = self.history;
+        let rounds: Vec<Vec<&Moment>> = moments
+            .chunk_by(|a, b| a.round == b.round)
+            .map(thinned)
+            .collect();
+        let curves = |x: fn(&Moment) -> f64| {
+            let curve = |round: &Vec<&Moment>| round.iter().map(|m| (x(m), m.unshot)).collect();
+            rounds.iter().map(curve).collect()
         };
-        let error = self
-            .report
-            .audit
-            .map(|audit| (audit.n_rms, "estimated error at the end"));
-        let plots: String = [
-            ("shots", curve(|m| m.shots as f64)),
-            ("seconds", curve(|m| m.seconds)),
-        ]
-        .iter()
-        .map(|(across, points)| {
-            let plot = Plot {
-                across,
-                up: "unshot power",
-                points,
-                mark: error,
-            };
-            plot.svg()
-        })
-        .collect();
+        let shots = Plot {
+            across: "shots",
+            up: "unshot power",
+            curves: curves(|m| m.shots as f64),
+            marks: estimates
+                .iter()
+                .map(|e| (e.shots as f64, e.n_rms))
+                .collect(),
+            name: "estimated error",
+        };
+        let seconds = Plot {
+            across: "seconds",
+            curves: curves(|m| m.seconds),
+            marks: estimates.iter().map(|e| (e.seconds, e.n_rms)).collect(),
+            ..shots.clone()
+        };
+        let plots = shots.svg() + &seconds.svg();
         match plots.is_empty() {
             true => plots,
             false => format!("<h2>Convergence</h2>\n<div class=\"plots\">\n{plots}</div>\n"),

@@ -19,7 +19,7 @@ mod vtu;
 pub use atomic::{WriteError, abandon_drafts, check_writable, remove_abandoned, write_atomically};
 pub use exr::write_exr;
 pub use glb::{GlbFacts, write_glb};
-pub use html::{Moment, Page, write_html};
+pub use html::{Estimated, History, Moment, Page, write_html};
 pub use matrix::{
     Dropped, Feed, MatrixTable, Sink, write_matrix_csv, write_matrix_market, write_npz,
 };

@@ -10,57 +10,69 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
-/// A curve that falls over decades.
+/// Curves that fall over decades, and points beside them.
+#[derive(Clone)]
 pub(super) struct Plot<'a> {
     /// What the horizontal axis is.
     pub across: &'a str,
     /// What the vertical axis is, a fraction.
     pub up: &'a str,
-    pub points: &'a [(f64, f64)],
-    /// A level to be marked, with its name.
-    pub mark: Option<(f64, &'a str)>,
+    pub curves: Vec<Vec<(f64, f64)>>,
+    /// Points of another quantity, a fraction too.
+    pub marks: Vec<(f64, f64)>,
+    /// What that is.
+    pub name: &'a str,
 }
 
 impl Plot<'_> {
     /// The plot as an `svg` element; empty if there is nothing to draw.
     pub fn svg(&self) -> String {
-        let drawn = self.points.iter().filter(|(_, y)| *y > 0.0);
-        let drawn: Vec<(f64, f64)> = drawn.copied().collect();
-        let least = drawn.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
-        let end = drawn.iter().map(|p| p.0).fold(0.0, f64::max);
-        if drawn.is_empty() || end <= 0.0 {
+        let curves: Vec<Vec<(f64, f64)>> = self.curves.iter().map(|curve| drawn(curve)).collect();
+        let marks = drawn(&self.marks);
+        let all = || curves.iter().flatten().chain(&marks);
+        let least = all().map(|p| p.1).fold(f64::INFINITY, f64::min);
+        let end = all().map(|p| p.0).fold(0.0, f64::max);
+        if curves.iter().all(Vec::is_empty) || end <= 0.0 {
             return String::new();
         }
-        let least = self
-            .mark
-            .map_or(least, |(level, _)| least.min(level.max(1e-9)));
-        let decades = (-least.log10()).ceil().clamp(1.0, 12.0);
+        let decades = (-least.max(1e-12).log10()).ceil().clamp(1.0, 12.0);
         let scale = Scale { end, decades };
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{} over {}\">\n",
             self.up, self.across
         );
         self.axes(&mut svg, &scale);
-        if let Some((level, name)) = self.mark.filter(|(level, _)| *level > 0.0) {
-            let (x, y) = (LEFT, scale.y(level));
-            let right = WIDTH - RIGHT;
+        for curve in &curves {
+            let line = scale.line(curve);
+            let _ = writeln!(svg, "<polyline class=\"curve\" points=\"{line}\"/>");
+        }
+        self.mark(&mut svg, &scale, &marks);
+        svg + "</svg>\n"
+    }
+
+    /// The other quantity's points, joined, the last with its name.
+    fn mark(&self, svg: &mut String, scale: &Scale, marks: &[(f64, f64)]) {
+        let Some(&(x, y)) = marks.last() else { return };
+        if marks.len() > 1 {
+            let line = scale.line(marks);
+            let _ = writeln!(svg, "<polyline class=\"marks\" points=\"{line}\"/>");
+        }
+        for (x, y) in marks {
             let _ = writeln!(
                 svg,
-                "<line class=\"mark\" x1=\"{x}\" y1=\"{y:.1}\" x2=\"{right}\" y2=\"{y:.1}\"/>\
-                 <text class=\"mark\" x=\"{right}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
-                y - 4.0
+                "<circle class=\"mark\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.5\"/>",
+                scale.x(*x),
+                scale.y(*y)
             );
         }
-        let line: Vec<String> = drawn
-            .iter()
-            .map(|(x, y)| format!("{:.1},{:.1}", scale.x(*x), scale.y(*y)))
-            .collect();
         let _ = writeln!(
             svg,
-            "<polyline class=\"curve\" points=\"{}\"/>",
-            line.join(" ")
+            "<text class=\"mark\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{} {:.2} %</text>",
+            scale.x(x) - 7.0,
+            scale.y(y) + 14.0,
+            self.name,
+            100.0 * y
         );
-        svg + "</svg>\n"
     }
 
     fn axes(&self, svg: &mut String, scale: &Scale) {
@@ -102,6 +114,11 @@ impl Plot<'_> {
     }
 }
 
+/// What a logarithmic scale can show.
+fn drawn(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    points.iter().filter(|(_, y)| *y > 0.0).copied().collect()
+}
+
 /// From values to places.
 struct Scale {
     end: f64,
@@ -109,6 +126,11 @@ struct Scale {
 }
 
 impl Scale {
+    fn line(&self, points: &[(f64, f64)]) -> String {
+        let place = |(x, y): &(f64, f64)| format!("{:.1},{:.1}", self.x(*x), self.y(*y));
+        points.iter().map(place).collect::<Vec<_>>().join(" ")
+    }
+
     fn x(&self, value: f64) -> f64 {
         LEFT + (WIDTH - LEFT - RIGHT) * value / self.end
     }

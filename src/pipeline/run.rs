@@ -6,7 +6,9 @@ use crate::mesh::Mesh;
 use crate::radiometry::{Spectrum, exitance_from_radiance};
 use crate::scene::Scene;
 use crate::solution::{Continuation, Report, Solution};
-use crate::solver::{Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders};
+use crate::solver::{
+    Estimate, Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders,
+};
 use crate::threads::pool;
 use crate::visibility::{Visibility, build_within};
 use rayon::ThreadPool;
@@ -213,6 +215,13 @@ impl Run {
             .pool
             .install(|| Solver::resume(&scene, state, visibility, options, spent).run(observer));
         self.spent = outcome.elapsed;
+        if let Some(audit) = outcome.audit {
+            observer.estimated(&Estimate {
+                shots: outcome.course.shots,
+                elapsed: outcome.elapsed,
+                n_rms: audit.n_rms,
+            });
+        }
         report.seconds.solve += started.elapsed().as_secs_f64();
         let reason = outcome.stop_reason;
         self.keep(scene, report, outcome);

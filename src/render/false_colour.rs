@@ -60,8 +60,18 @@ pub fn colour(share: f64) -> [u8; 3] {
     })
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is not below the value.
-fn round_above(value: f64) -> f64 {
+/// The bar that tells which colour is which value in `unit`, from 0 to `top`, `height` pixels high or a little more.
+pub fn legend(top: f64, unit: &str, height: u32) -> Picture<[u8; 3]> {
+    let height = (height as usize)
+        .saturating_sub(2 * GAP)
+        .max(8 * digits::HEIGHT);
+    let mut canvas = Canvas::new(GAP + BAR + ROOM, height + 2 * GAP);
+    canvas.legend(GAP, height, top, unit);
+    canvas.picture
+}
+
+/// The least round number that is not below the value: 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten.
+pub fn round_above(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;
     }

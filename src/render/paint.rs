@@ -19,6 +19,7 @@ const MESH_FLIP: f32 = 0.25;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pixel {
     pub(super) radiance: Vec3,
+    pub(super) irradiance: Vec3,
     /// The fraction of the pixel where there is a surface.
     pub(super) covered: f32,
     /// Display light, linear. The mean of tone-mapped samples: the edge of a bright light stays smooth.
@@ -27,16 +28,20 @@ pub(super) struct Pixel {
     pub(super) drawing: f32,
     /// As `display`, with the boundaries of elements drawn on it.
     pub(super) meshed: Vec3,
+    /// How much of the pixel these boundaries cover.
+    pub(super) lined: f32,
 }
 
 impl Pixel {
     /// Where there is no surface.
     pub(super) const BACKGROUND: Self = Self {
         radiance: Vec3::ZERO,
+        irradiance: Vec3::ZERO,
         covered: 0.0,
         display: Vec3::ZERO,
         drawing: PAPER,
         meshed: Vec3::ZERO,
+        lined: 0.0,
     };
 }
 
@@ -72,10 +77,12 @@ impl<'a> Painter<'a> {
         let share = 1.0 / points.len() as f32;
         Pixel {
             radiance: sum.radiance * share,
+            irradiance: sum.irradiance * share,
             covered: sum.covered * share,
             display: sum.display * share,
             drawing: sum.drawing * share,
             meshed: sum.meshed * share,
+            lined: sum.lined * share,
         }
     }
 
@@ -89,7 +96,9 @@ impl<'a> Painter<'a> {
             let radiance = radiance_from_radiosity(seen.interpolate(|vertex| vertex.radiosity));
             let display = self.tone.display(radiance);
             sum.radiance += radiance;
+            sum.irradiance += seen.interpolate(|vertex| vertex.irradiance);
             sum.covered += 1.0;
+            sum.lined += cover.mesh;
             sum.display += display;
             sum.meshed += if cover.mesh > 0.0 {
                 contrasted(display, cover.mesh)
@@ -101,7 +110,7 @@ impl<'a> Painter<'a> {
 }
 
 /// A line of this strength on a surface of this colour (both linear).
-fn contrasted(display: Vec3, strength: f32) -> Vec3 {
+pub(super) fn contrasted(display: Vec3, strength: f32) -> Vec3 {
     let shade = display.map(srgb);
     let contrast = if shade.max_element() > MESH_FLIP {
         -MESH_CONTRAST

@@ -19,6 +19,8 @@ pub(super) struct Sight<'a> {
 /// A visible point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen<'a> {
+    /// Index of the triangle in the mesh.
+    pub(super) triangle: u32,
     /// Unit normal of the triangle, towards the eye.
     pub(super) normal: DVec3,
     /// A point of its plane.
@@ -119,8 +121,10 @@ impl<'a> Sight<'a> {
     }
 
     fn seen(&self, hit: Hit) -> Seen<'a> {
-        let triangle = &self.mesh.triangles[self.facing[hit.triangle as usize] as usize];
+        let number = self.facing[hit.triangle as usize];
+        let triangle = &self.mesh.triangles[number as usize];
         Seen {
+            triangle: number,
             anchor: self.positions(triangle)[0],
             corners: triangle
                 .vertices
@@ -146,6 +150,13 @@ impl Seen<'_> {
     pub(super) fn interpolate(&self, quantity: impl Fn(&LitVertex) -> Spectrum) -> Spectrum {
         let [a, b, c] = self.corners.map(quantity);
         self.weights[0] * a + self.weights[1] * b + self.weights[2] * c
+    }
+
+    /// Where it is.
+    pub(super) fn point(&self, mesh: &LitMesh) -> DVec3 {
+        let [a, b, c] = corner_positions(mesh, &mesh.triangles[self.triangle as usize]);
+        let [u, v, w] = self.weights.map(f64::from);
+        u * a + v * b + w * c
     }
 
     /// Distance of `point` from the plane of the triangle, positive on the eye's side.

@@ -61,20 +61,23 @@ impl Tracer<'_> {
         Tone::metered(&samples)
     }
 
-    /// All pixels, row by row in parallel.
+    /// All pixels, row by row in parallel; `None` once they are no longer `wanted`.
     pub(super) fn paint(
         &self,
-        width: u32,
-        height: u32,
+        (width, height): (u32, u32),
         pattern: &[DVec2],
         painter: &Painter,
-    ) -> Vec<Pixel> {
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Vec<Pixel>> {
         let mut pixels = vec![Pixel::default(); width as usize * height as usize];
         let buffers = || (Vec::new(), Scratch::default(), Vec::new(), Vec::new());
         pixels
             .par_chunks_mut((width as usize).max(1))
             .enumerate()
-            .for_each_init(buffers, |(points, scratch, seen, near), (y, row)| {
+            .try_for_each_init(buffers, |(points, scratch, seen, near), (y, row)| {
+                if !wanted() {
+                    return None;
+                }
                 let corners = (0..width).map(|x| DVec2::new(f64::from(x), y as f64));
                 points.clear();
                 points.extend(
@@ -87,7 +90,8 @@ impl Tracer<'_> {
                     let middle = DVec2::new(x as f64, y as f64) + 0.5;
                     *pixel = painter.pixel(middle, points, seen, near);
                 }
-            });
-        pixels
+                Some(())
+            })?;
+        Some(pixels)
     }
 }

@@ -1,26 +1,25 @@
 //! One look through a camera, and the pictures it gives.
 
-use super::lens::Lens;
-use super::lines::Pen;
+use super::false_colour::colour as false_colour;
 use super::options::RenderOptions;
-use super::paint::{Painter, Pixel};
+use super::paint::{Pixel, contrasted};
 use super::picture::Picture;
-use super::sight::Sight;
+use super::place::Place;
 use super::tone::{Tone, quantise};
-use super::trace::{Tracer, pattern};
-use crate::radiometry::srgb;
+use crate::radiometry::{Spectrum, linear, srgb};
 use crate::scene::Camera;
 use crate::solution::LitMesh;
 use crate::visibility::{Triangles, Visibility};
 use glam::Vec3;
+use std::f32::consts::PI;
 
 /// What a camera sees of a solution.
 #[derive(Debug, Clone)]
 pub struct View {
-    width: u32,
-    height: u32,
-    tone: Tone,
-    pixels: Vec<Pixel>,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) tone: Tone,
+    pub(super) pixels: Vec<Pixel>,
 }
 
 impl View {
@@ -37,35 +36,10 @@ impl View {
         options: &RenderOptions,
         build: impl FnOnce(Triangles) -> Result<Box<dyn Visibility>, E>,
     ) -> Result<Self, E> {
-        let lens = Lens::new(camera);
-        let (sight, triangles) = Sight::new(mesh, lens.eye);
-        let (width, height) = (camera.width, camera.height);
-        if triangles.indices.is_empty() {
-            let pixels = vec![Pixel::BACKGROUND; width as usize * height as usize];
-            return Ok(Self {
-                width,
-                height,
-                tone: Tone::new(camera.exposure.unwrap_or(0.0)),
-                pixels,
-            });
-        }
-        let engine = build(triangles)?;
-        let tracer = Tracer {
-            sight: &sight,
-            lens: &lens,
-            engine: engine.as_ref(),
-        };
-        let tone = camera
-            .exposure
-            .map_or_else(|| tracer.meter(width, height), Tone::new);
-        let painter = Painter::new(tone, Pen::new(&lens, options, &sight), &lens);
-        let pixels = tracer.paint(width, height, &pattern(options.samples_per_side), &painter);
-        Ok(Self {
-            width,
-            height,
-            tone,
-            pixels,
-        })
+        let place = Place::new(mesh, camera.eye, build)?;
+        Ok(place
+            .view(camera, options, &|| true)
+            .expect("it is wanted to the end"))
     }
 
     /// The exposure of the tone-mapped pictures: the camera's, or what suits the picture.
@@ -93,6 +67,28 @@ impl View {
     /// brighter where that is dark. They fade where elements measure only a few pixels.
     pub fn mesh(&self) -> Picture<[u8; 3]> {
         self.picture(|pixel, x, y| dithered(pixel.meshed, x, y))
+    }
+
+    /// What `value` makes of radiosity and irradiance (W/m², means over what the pixel shows of surfaces), in false colours from 0
+    /// to `top`, on black; with the boundaries of the elements if `meshed`.
+    pub fn false_colours(
+        &self,
+        top: f64,
+        meshed: bool,
+        value: impl Fn(Spectrum, Spectrum) -> f64,
+    ) -> Picture<[u8; 3]> {
+        self.picture(|pixel, _, _| {
+            if pixel.covered <= 0.0 {
+                return [0; 3];
+            }
+            let [radiosity, irradiance] =
+                [pixel.radiance * PI, pixel.irradiance].map(|sum| sum / pixel.covered);
+            let shade = false_colour(value(radiosity, irradiance) / top);
+            let light = Vec3::from(shade.map(|c| linear(f32::from(c) / 255.0)));
+            let lines = if meshed { pixel.lined } else { 0.0 };
+            let light = contrasted(light, lines / pixel.covered) * pixel.covered;
+            light.to_array().map(|c| (255.0 * srgb(c)).round() as u8)
+        })
     }
 
     fn picture<P>(&self, colour: impl Fn(&Pixel, u32, u32) -> P) -> Picture<P> {

@@ -33,6 +33,15 @@ impl NamedScene {
     pub fn load(path: &Path) -> Result<NamedScene, SceneError> {
         load(path, SidesRule::Front)
     }
+
+    /// Reads a scene as [`Scene::load`] does, with the names of its polygons.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Scene::load`].
+    pub fn load_lit(path: &Path) -> Result<NamedScene, SceneError> {
+        load(path, SidesRule::Auto)
+    }
 }
 
 /// Reads a scene in which `auto` sides come to `auto`.

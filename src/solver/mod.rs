@@ -30,7 +30,7 @@ pub use course::{Course, MeshingEnd};
 pub use error::ErrorModel;
 pub use ledger::Ledger;
 pub use light::{Light, Sign};
-pub use observer::{Control, Observer, Phase, Progress, Silent};
+pub use observer::{Control, Estimate, Observer, Phase, Progress, Silent};
 pub use open::OpenLight;
 pub use options::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 pub use outcome::{Outcome, StopReason};

@@ -44,6 +44,17 @@ pub struct Progress {
     pub elapsed: Duration,
 }
 
+/// What was found when the error was estimated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Shots that were complete.
+    pub shots: u64,
+    /// Since the start, the estimate's own time included.
+    pub elapsed: Duration,
+    /// Estimated RMS error of the irradiance over its mean.
+    pub n_rms: f64,
+}
+
 /// What an observer wants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
@@ -57,6 +68,9 @@ pub enum Control {
 pub trait Observer: Send {
     /// Called between batches, from the thread that solves.
     fn progress(&mut self, progress: &Progress) -> Control;
+
+    /// Called after each estimate of the error: once at the end of a solve, and of each round on the way to a target.
+    fn estimated(&mut self, _estimate: &Estimate) {}
 }
 
 /// An observer that lets the solve run.

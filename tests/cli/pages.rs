@@ -8,14 +8,7 @@ use std::fs;
 fn page(flags: &[&str]) -> String {
     let folder = folder();
     let scene = scene("cornell-box");
-    let solve = [
-        "solve",
-        text(&scene),
-        "-o",
-        text(folder.path()),
-        "--preset",
-        "draft",
-    ];
+    let solve = ["solve", text(&scene), "-o", text(folder.path())];
     radiosity(&[&solve[..], flags].concat()).assert_success();
     let html = fs::read_to_string(folder.path().join("report.html")).expect("was written");
     let options = ParsingOptions {
@@ -41,7 +34,7 @@ fn page(flags: &[&str]) -> String {
 
 #[test]
 fn the_report_is_one_page_with_everything_in_it() {
-    let html = page(&[]);
+    let html = page(&["--preset", "draft"]);
     for words in [
         "<title>Cornell box: radiosity</title>",
         "converged",
@@ -77,12 +70,67 @@ fn the_report_is_one_page_with_everything_in_it() {
         .collect();
     assert_eq!(curves.len(), 2, "over shots and over seconds");
     assert!(curves.iter().all(|points| *points > 20), "{curves:?}");
-    assert!(html.contains("estimated error at the end"));
+    assert_eq!(estimates(&html), (2, 0));
+    assert_eq!(
+        html.matches("text-anchor=\"end\">estimated error ").count(),
+        2
+    );
+}
+
+/// Points and lines of estimates in both plots.
+fn estimates(html: &str) -> (usize, usize) {
+    let count = |what: &str| html.matches(what).count();
+    (
+        count("<circle class=\"mark\""),
+        count("<polyline class=\"marks\""),
+    )
+}
+
+#[test]
+fn every_round_on_the_way_to_an_error_has_its_estimate_in_the_plot() {
+    // The first round falls a little short of it.
+    let html = page(&[
+        "--target-error",
+        "2%",
+        "--max-elements",
+        "150",
+        "--no-pictures",
+        "--formats",
+        "none",
+    ]);
+    let rounds = html.split("reached in ").nth(1);
+    let rounds = rounds.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
+    let rounds = rounds.expect("says how many solves it took");
+    assert!(rounds > 1, "{rounds}");
+    assert_eq!(estimates(&html), (2 * rounds, 2));
+    let ends: Vec<[f64; 2]> = html
+        .split("class=\"curve\" points=\"")
+        .skip(1)
+        .map(|curve| {
+            let curve = curve.split('"').next().unwrap_or_default();
+            let places = curve.split([' ', ',']).step_by(2);
+            let places: Vec<f64> = places.map(|x| x.parse().unwrap_or(f64::NAN)).collect();
+            assert!(places.is_sorted(), "{places:?}");
+            [places[0], places[places.len() - 1]]
+        })
+        .collect();
+    assert_eq!(
+        ends.len(),
+        2 * rounds,
+        "a curve a round, over shots and over seconds"
+    );
+    for plot in ends.chunks(rounds) {
+        assert!(
+            plot.as_flattened().is_sorted(),
+            "one after the other: {plot:?}"
+        );
+    }
 }
 
 #[test]
 fn without_pictures_the_page_has_none() {
-    let html = page(&["--no-pictures", "--formats", "none", "--max-shots", "2"]);
+    let short = ["--preset", "draft", "--max-shots", "2"];
+    let html = page(&[&short[..], &["--no-pictures", "--formats", "none"]].concat());
     assert!(!html.contains("<img") && !html.contains("solution.ply"));
     assert!(html.contains("max-shots"));
 }

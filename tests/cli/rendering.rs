@@ -71,3 +71,29 @@ fn a_view_that_cannot_be_is_refused() {
     assert_eq!(usage.code, Some(2), "{}", usage.err);
     assert!(usage.err.contains("three numbers"), "{}", usage.err);
 }
+
+#[test]
+fn a_window_needs_a_display_or_the_program_that_has_one() {
+    let without = |arguments: &[&str]| -> super::Run {
+        let mut command = super::command();
+        for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(name);
+        }
+        let run = command.args(arguments).output().expect("can be started");
+        run.into()
+    };
+    let words = match cfg!(feature = "viewer") {
+        true => "no window can be opened",
+        false => "--features viewer",
+    };
+    let folder = super::folder();
+    let output = folder.path().join("out");
+    let scene = super::scene("cornell-box");
+    let solve = ["solve", text(&scene), "-o", text(&output), "--watch"];
+    for arguments in [&["view", "out"][..], &solve] {
+        let run = without(arguments);
+        run.assert_refused(1, &[words]);
+        assert_eq!(run.err.lines().count(), 1, "{}", run.err);
+    }
+    assert!(!output.exists(), "nothing was begun");
+}

@@ -114,6 +114,7 @@ fn help_has_examples_defaults_and_exit_codes() {
     for command in [
         "resume",
         "render",
+        "view",
         "probe",
         "export",
         "form-factors",

@@ -2,16 +2,16 @@
 # Fuzzes every reader with coverage guidance (libFuzzer) and the address sanitizer, from seeds made of the bundled scenes.
 # Needs `cargo install cargo-fuzz` and a nightly compiler. What it finds lies in tests/fuzz/artifacts.
 #
-#   tests/fuzz/run.sh [SECONDS] [TARGET...]     60 s for each of scene, solve, points and solution unless told otherwise
+#   tests/fuzz/run.sh [SECONDS] [TARGET...]     60 s for each of scene, gltf, ply, solve, points and solution unless told otherwise
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 seconds=${1:-60}
 shift $(($# > 0 ? 1 : 0))
 targets=("${@:-scene}")
-[ $# -gt 0 ] || targets=(scene solve points solution)
+[ $# -gt 0 ] || targets=(scene gltf ply solve points solution)
 corpus=${CARGO_TARGET_DIR:-target}/fuzz
-mkdir -p "$corpus"/{scene,solve,points,solution}
+mkdir -p "$corpus"/{scene,gltf,ply,solve,points,solution}
 
 # A scene is its three files with NUL between them.
 for folder in scenes/*/; do
@@ -22,6 +22,8 @@ done
 cp tests/fuzz/seeds/scene/* "$corpus"/scene/
 cp tests/fuzz/seeds/scene/* "$corpus"/solve/
 cp tests/fuzz/seeds/points/* "$corpus"/points/
+cp tests/fuzz/seeds/gltf/* "$corpus"/gltf/
+cp tests/fuzz/seeds/ply/* "$corpus"/ply/
 # A solution without its header, of 24 bytes.
 if ! [ -e "$corpus"/solution/whole ]; then
     solved=$(mktemp -d)

@@ -4,7 +4,7 @@ use super::{Outcome, small_mesh};
 use glam::{DVec3, Vec3};
 use radiosity::output::{GlbFacts, VtuFacts, write_glb, write_obj, write_vtu};
 use radiosity::radiometry::{WHITE_EFFICACY, photometric};
-use radiosity::scene::Camera;
+use radiosity::scene::{Camera, Names};
 use radiosity::solution::LitMesh;
 use std::error::Error;
 use std::fs;
@@ -33,12 +33,22 @@ fn glb_of_sides(
     cameras: &[Camera],
     two_sided: &[bool],
 ) -> Result<Vec<u8>, Box<dyn Error>> {
+    glb_of_objects(mesh, cameras, two_sided, &Names::default())
+}
+
+fn glb_of_objects(
+    mesh: &LitMesh,
+    cameras: &[Camera],
+    two_sided: &[bool],
+    names: &Names,
+) -> Result<Vec<u8>, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("solution.glb");
     let facts = GlbFacts {
         name: "a \"quoted\" name",
         metres_per_unit: 0.01,
         cameras,
+        names,
         exposure: 1.5,
         two_sided,
     };
@@ -105,6 +115,50 @@ fn glb_keeps_the_light_and_says_what_it_is() -> Outcome {
     assert_eq!(document["meshes"][0]["name"], "a \"quoted\" name");
     let unlit = &document["materials"][0]["extensions"]["KHR_materials_unlit"];
     assert!(unlit.is_object());
+    Ok(())
+}
+
+#[test]
+fn glb_has_a_node_for_each_object() -> Outcome {
+    let mut mesh = small_mesh(DVec3::ZERO);
+    let first = mesh.triangles[0];
+    for polygon in [2, 1, 0] {
+        let mut triangle = first;
+        triangle.polygon = polygon;
+        triangle.vertices.rotate_left(polygon as usize);
+        mesh.triangles.push(triangle);
+    }
+    let names = Names {
+        groups: vec!["wall".into(), "floor".into()],
+        group_of: vec![Some(1), None, Some(0)],
+        ..Names::default()
+    };
+    let bytes = glb_of_objects(&mesh, &[camera()], &[], &names)?;
+    let read = gltf::Gltf::from_slice(&bytes)?;
+    let blob = read.blob.as_deref();
+    let mut found = Vec::new();
+    for node in read.nodes().filter(|node| node.camera().is_none()) {
+        let shape = node.mesh().ok_or("no mesh")?;
+        assert_eq!(node.name(), shape.name());
+        let primitive = shape.primitives().next().ok_or("no primitive")?;
+        let corners = primitive.reader(|_| blob).read_indices();
+        let corners: Vec<u32> = corners.ok_or("indices")?.into_u32().collect();
+        found.push((node.name().unwrap_or_default().to_owned(), corners));
+    }
+    let corners = |numbers: &[usize]| -> Vec<u32> {
+        let triangles = numbers.iter().map(|n| mesh.triangles[*n].vertices);
+        triangles.flatten().collect()
+    };
+    let expected = [
+        ("floor", corners(&[0, 3])),
+        ("wall", corners(&[1])),
+        ("a \"quoted\" name", corners(&[2])),
+    ];
+    assert_eq!(
+        found,
+        expected.map(|(name, corners)| (name.to_owned(), corners))
+    );
+    assert_eq!(read.nodes().count(), 4);
     Ok(())
 }
 

@@ -168,3 +168,23 @@ fn automatic_exposure_brings_a_grey_wall_to_a_fifth_of_white() {
         assert!((Tone::for_mesh(&mesh).exposure() - expected).abs() < 1e-4);
     }
 }
+
+#[test]
+fn false_colours_tell_the_value_of_what_is_seen() {
+    use radiosity::render::false_colour;
+    let mesh = square(1.0, 2, |_| Vec3::new(3.0, 2.0, 1.0));
+    let view = look(&mesh, &head_on(20, 2.0), &RenderOptions::standard());
+    // Irradiance is twice the radiosity in this mesh.
+    let radiosity = view.false_colours(4.0, false, |radiosity, _| f64::from(radiosity.y));
+    let irradiance = view.false_colours(16.0, false, |_, irradiance| f64::from(irradiance.x));
+    assert_eq!(*radiosity.at(10, 8), false_colour(0.5));
+    assert_eq!(*irradiance.at(10, 8), false_colour(0.375));
+    assert_eq!(*radiosity.at(1, 1), [0; 3], "nothing is there");
+    let meshed = view.false_colours(4.0, true, |radiosity, _| f64::from(radiosity.y));
+    assert_ne!(
+        meshed.at(10, 9),
+        radiosity.at(10, 9),
+        "a line between elements"
+    );
+    assert_eq!(meshed.at(7, 7), radiosity.at(7, 7), "inside of one");
+}

@@ -60,7 +60,7 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 15] = [
+const IMPORTS: [(&str, &[&str]); 16] = [
     ("codec", &[]),
     ("geometry", &[]),
     ("radiometry", &[]),
@@ -83,6 +83,7 @@ const IMPORTS: [(&str, &[&str]); 15] = [
         "render",
         &["geometry", "radiometry", "scene", "visibility", "solution"],
     ),
+    ("viewer", VIEWER),
     (
         "pipeline",
         &[
@@ -116,6 +117,7 @@ const MATRIX: &[&str] = &[
     "form_factor",
     "mesh",
 ];
+const VIEWER: &[&str] = &["radiometry", "scene", "visibility", "solution", "render"];
 /// The command may use all that the library offers.
 const CLI: &[&str] = &[
     "codec",
@@ -131,6 +133,7 @@ const CLI: &[&str] = &[
     "output",
     "render",
     "pipeline",
+    "viewer",
 ];
 
 /// Crates that are the language we speak rather than a choice of one room: vectors, threads, derives, a hasher.
@@ -252,6 +255,7 @@ fn owner_of(name: &str) -> Option<&'static str> {
         "clap" | "clap_complete" | "clap_mangen" | "indicatif" | "anyhow" => Some("cli"),
         "obvhs" | "embree4_sys" => Some("visibility"),
         "tobj" | "toml" => Some("scene"),
+        "softbuffer" | "winit" => Some("viewer"),
         _ => None,
     }
 }

@@ -1,5 +1,6 @@
 //! Fuzz input as the files of a scene.
 
+use radiosity::scene::{NamedScene, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -29,4 +30,22 @@ pub fn scene_of(data: &[u8]) -> PathBuf {
         return folder.join("s.obj");
     }
     folder.to_path_buf()
+}
+
+/// Reads a file with geometry.
+#[allow(dead_code)]
+pub fn read_geometry(name: &str, data: &[u8]) {
+    let path = FOLDER.path().join(name);
+    fs::write(&path, data).expect("can be written");
+    read(&path);
+}
+
+/// Reads a scene: a sound one, or an error.
+#[allow(dead_code)]
+pub fn read(path: &Path) {
+    if let Ok(scene) = Scene::load(path) {
+        scene.check().expect("a scene that was read is sound");
+        let _ = scene.summary();
+    }
+    let _ = NamedScene::load(path);
 }

@@ -1,0 +1,8 @@
+//! Any PLY is a scene or an error.
+#![no_main]
+
+mod files;
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| files::read_geometry("s.ply", data));
