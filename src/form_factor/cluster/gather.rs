@@ -19,7 +19,10 @@ const MOST: usize = 2048;
 const LEAST_KNOWN: f32 = 0.02;
 
 /// A cluster that looks larger than this, radius over distance, is not taken whole for the first guess of the light at a point.
-const GUESS: f32 = 0.5;
+const GUESS: f32 = 1.0;
+
+/// A cluster beside a receiver that looks along it gains no more than this part by its size: the series does not hold there.
+const MOST_GAIN: f32 = 0.25;
 
 /// Rays along each side of a tile that gives a point much.
 const MOST_RAYS: u32 = 4;
@@ -273,7 +276,7 @@ impl Node {
         let square = square.max(self.radius * self.radius);
         let across = normal.dot(self.axis) * along / height.max(self.radius);
         let bend = 4.0 - 4.0 * across - 12.0 * along * along / square;
-        let change = self.variance / square * bend;
+        let change = (self.variance / square * bend).min(MOST_GAIN);
         if change >= 0.0 {
             1.0 + change
         } else {
