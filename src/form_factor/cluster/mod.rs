@@ -14,6 +14,7 @@ mod gather;
 mod light;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use gather::ClusterScratch;
 
