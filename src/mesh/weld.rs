@@ -30,17 +30,25 @@ pub(super) struct Weld {
     followed: Vec<u32>,
 }
 
-/// Corners of two patches at the ends of a side that they share.
+/// A side of a patch: the bits of its ends in order, the patch, its vertices there.
 type Side = ([u64; 6], u32, u32, u32);
 
 impl Mesh {
-    /// Welds what makes one surface.
-    pub fn weld(&mut self) {
+    /// Welds what makes one surface, or takes it apart.
+    pub fn weld_if(&mut self, welded: bool) {
+        let is_welded = !self.weld.leader.is_empty();
+        match (welded, is_welded) {
+            (true, false) => self.weld(),
+            (false, true) => self.weld = Weld::default(),
+            _ => {}
+        }
+    }
+
+    fn weld(&mut self) {
         let corners = self.corner_vertices();
         let mut sites = Sites::new(self.vertices.len());
-        for (p, q, ends) in self.smooth_sides(&corners) {
-            debug_assert!(p != q);
-            ends.into_iter().for_each(|[a, b]| sites.join(a, b));
+        for [a, b] in self.smooth_ends(&corners) {
+            sites.join(a, b);
         }
         let mut weld = Weld {
             leader: (0..self.vertices.len() as u32).collect(),
@@ -58,11 +66,6 @@ impl Mesh {
             }
         }
         self.weld = weld;
-    }
-
-    /// Whether [`Self::weld`] was called.
-    pub fn is_welded(&self) -> bool {
-        !self.weld.leader.is_empty()
     }
 
     /// Whether a vertex receives for itself, and for its site.
@@ -123,15 +126,15 @@ impl Mesh {
         self.patches.par_iter().enumerate().map(corners).collect()
     }
 
-    /// Pairs of patches that belong together along a side, with the corners of both at its ends.
-    fn smooth_sides(&self, corners: &[[u32; 4]]) -> Vec<(u32, u32, [[u32; 2]; 2])> {
+    /// The corners that two patches have at either end of a side along which they belong together.
+    fn smooth_ends(&self, corners: &[[u32; 4]]) -> Vec<[u32; 2]> {
         let mut sides: Vec<Side> = (0..self.patches.len() as u32)
             .into_par_iter()
             .flat_map_iter(|number| self.sides_of(number, &corners[number as usize]))
             .collect();
         sides.par_sort_unstable();
         let shared = sides.chunk_by(|a, b| a.0 == b.0);
-        shared.flat_map(|sides| self.pairs(sides)).collect()
+        shared.flat_map(|sides| self.ends(sides)).collect()
     }
 
     /// The sides of a patch by the bits of their ends in order, with the vertices there.
@@ -147,25 +150,25 @@ impl Mesh {
         })
     }
 
-    /// Of all patches on one side, those of two surfaces that belong together: both fronts, or both backs. The side between two
+    /// Of all patches on one side, the ends of those of two surfaces that belong together: both fronts, or both backs. The side between two
     /// pieces of one surface is a line of contact: something stands there.
-    fn pairs(&self, sides: &[Side]) -> Vec<(u32, u32, [[u32; 2]; 2])> {
+    fn ends(&self, sides: &[Side]) -> Vec<[u32; 2]> {
         let patch = |side: &Side| &self.patches[side.1 as usize];
         let mut surfaces: Vec<u32> = sides.iter().map(|side| patch(side).surface).collect();
         surfaces.dedup();
         if surfaces.len() != 2 {
             return Vec::new();
         }
-        let mut pairs = Vec::new();
+        let mut ends = Vec::new();
         for (i, a) in sides.iter().enumerate() {
             for b in &sides[i + 1..] {
                 if patch(a).surface != patch(b).surface && self.belong_together(patch(a), patch(b))
                 {
-                    pairs.push((a.1, b.1, [[a.2, b.2], [a.3, b.3]]));
+                    ends.extend([[a.2, b.2], [a.3, b.3]]);
                 }
             }
         }
-        pairs
+        ends
     }
 
     fn belong_together(&self, a: &Patch, b: &Patch) -> bool {
@@ -174,7 +177,7 @@ impl Mesh {
         let small = 4.0 * self.limits.min_size * self.frame.extent();
         let is_small = |patch: &Patch| crate::geometry::polygon::diameter(patch.corners()) < small;
         let facing = cosine >= SMOOTH.to_radians().cos();
-        facing && (curved || is_small(a) && is_small(b)) && same_material(a, b)
+        facing && (curved || is_small(a) && is_small(b)) && a.exitance == b.exitance
     }
 
     /// Makes one of the corners in a site.
@@ -220,10 +223,6 @@ impl Mesh {
         };
         mixed.normalize_or(patch.normal)
     }
-}
-
-fn same_material(a: &Patch, b: &Patch) -> bool {
-    a.exitance == b.exitance
 }
 
 /// The angle of a patch at one of its corners.

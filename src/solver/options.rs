@@ -1,7 +1,7 @@
 //! Every threshold of the method, and three presets.
 
 use crate::form_factor::{DEEPEST, Formula};
-use crate::mesh::MeshLimits;
+use crate::mesh::{Mesh, MeshLimits};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -251,6 +251,11 @@ impl Options {
             FormFactorRule::Disk => Formula::Disk,
             FormFactorRule::Polygon => Formula::Polygon,
         }
+    }
+
+    /// Whether a mesh has so many patches that they shoot as clusters.
+    pub fn clusters(&self, mesh: &Mesh) -> bool {
+        mesh.patches.len() > self.cluster_from
     }
 
     /// Levels of the source pyramid: the deepest whose cells are not below ε_A, at least one.

@@ -58,9 +58,7 @@ impl<'a> Solver<'a> {
         visibility: &'a dyn Visibility,
         options: Options,
     ) -> Self {
-        if mesh.patches.len() > options.cluster_from {
-            mesh.weld();
-        }
+        mesh.weld_if(options.clusters(&mesh));
         let backing = backing(scene, &mesh);
         mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
         mesh.integrate();
@@ -77,9 +75,7 @@ impl<'a> Solver<'a> {
         options: Options,
         spent: Duration,
     ) -> Self {
-        if mesh.patches.len() > options.cluster_from && !mesh.is_welded() {
-            mesh.weld();
-        }
+        mesh.weld_if(options.clusters(&mesh));
         let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
         let emitted: f64 = mesh
             .patches

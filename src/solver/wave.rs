@@ -63,7 +63,7 @@ pub(super) enum Kind {
 impl Solver<'_> {
     /// Whether there are so many patches that they shoot as clusters.
     pub(super) fn is_clustered(&self) -> bool {
-        self.mesh.patches.len() > self.options.cluster_from
+        self.options.clusters(&self.mesh)
     }
 
     /// All that is unshot of the stronger sign sets out.
