@@ -32,6 +32,27 @@ fn what_is_wrong_is_said() {
             &["node 0 twice in the tree"],
         ),
         (
+            "/images",
+            json!([{ "name": "nowhere" }]),
+            &["image 0 without a source", "`uri` or `bufferView`"],
+        ),
+        (
+            "/images",
+            json!([{ "bufferView": 0 }]),
+            &["image 0 without a type", "`mimeType`"],
+        ),
+        (
+            "/cameras",
+            json!([{ "type": "perspective",
+                     "orthographic": { "xmag": 1, "ymag": 1, "zfar": 9, "znear": 1 } }]),
+            &["camera 0 without its view", "`perspective`"],
+        ),
+        (
+            "/cameras",
+            json!([{ "type": "orthographic", "perspective": { "yfov": 1, "znear": 1 } }]),
+            &["camera 0 without its view", "`orthographic`"],
+        ),
+        (
             "/accessors/0/count",
             json!(5),
             &["accessor 0 beyond the end", "mesh 0"],

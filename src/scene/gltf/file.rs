@@ -1,5 +1,6 @@
 //! The parts of a glTF file: the document, and its buffers.
 
+use super::complete::gap;
 use crate::codec::from_base64;
 use crate::scene::SceneError;
 use crate::scene::load::stays_below;
@@ -39,13 +40,8 @@ impl<'a> File<'a> {
                 "one without, as exported without compression",
             ));
         }
-        // The crate's own checks take it for granted that these exist.
-        let accessors = root.accessors.len();
-        let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        let mut attributes = primitives.flat_map(|primitive| primitive.attributes.values());
-        if let Some(wrong) = attributes.find(|accessor| accessor.value() >= accessors) {
-            let found = format!("accessor {} of {accessors}", wrong.value());
-            return Err(refuse(found, "one that exists"));
+        if let Some((found, expected)) = gap(&root) {
+            return Err(refuse(found, expected));
         }
         let document = Document::from_json(root)
             .map_err(|e| refuse(format!("a file that breaks the rules ({e})"), "glTF 2.0"))?;

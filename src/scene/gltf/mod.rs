@@ -6,6 +6,7 @@
 
 mod accessor;
 mod camera;
+mod complete;
 mod file;
 mod lights;
 mod materials;
