@@ -16,6 +16,10 @@ pub struct MeshLimits {
     pub min_size: f64,
 }
 
+/// With more pieces than this, slivers are not cut into elements shorter than the smallest: there would be more of these than of all
+/// others together.
+const MANY: usize = 2000;
+
 impl Mesh {
     /// The coarsest mesh: surfaces are split along the lines in which others meet them; then a patch for each radiating side
     /// of each piece, a grid of nearly square elements on each quad patch, one element on each triangle, split until
@@ -38,6 +42,12 @@ impl Mesh {
             at: FxHashMap::default(),
             limits,
         };
+        let many = pieces.list.len() > MANY;
+        let shortest = if many {
+            limits.min_size * mesh.frame.extent()
+        } else {
+            0.0
+        };
         for piece in pieces.list {
             let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
@@ -46,13 +56,13 @@ impl Mesh {
             front.outline = piece.outline;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
-            mesh.add_patch(front);
+            mesh.add_patch(front, shortest);
             if surface.sides == Sides::Both {
                 corners.reverse();
                 let mut back = Patch::new(piece.surface, surface.polygon, &corners, true);
                 back.outline = reversed(piece.outline, corners.len());
                 back.reflectance = material.reflectance;
-                mesh.add_patch(back);
+                mesh.add_patch(back, shortest);
             }
         }
         mesh.split_to_initial_size();
@@ -66,10 +76,10 @@ impl Mesh {
         &self.limits
     }
 
-    fn add_patch(&mut self, mut patch: Patch) {
+    fn add_patch(&mut self, mut patch: Patch, shortest: f64) {
         let id = self.patches.len() as u32;
         let first = self.elements.len() as u32;
-        patch.grid = grid_of(&patch, self.limits.min_size * self.frame.extent());
+        patch.grid = grid_of(&patch, shortest);
         let (columns, rows) = patch.grid;
         self.patches.push(patch);
         self.touched.push(true);
