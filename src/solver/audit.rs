@@ -164,23 +164,19 @@ impl Solver<'_> {
         let mut tiling = Tiling::new(&self.mesh);
         let light = tiling.unshot(&self.mesh, whole, Sign::Positive);
         let ones = vec![Spectrum::ONE; light.len()];
-        let mut look = |sampler: &Sampler, light: Vec<Spectrum>, seed: u32| {
-            tiling.clusters.radiate(light, seed);
-            let shooter = Shooter::All {
-                tiling: tiling.clone(),
-                settled: true,
-            };
-            evaluate(sampler, &shooter, receivers).0
+        tiling.clusters.radiate(light, 0x6175_6469);
+        let mut shooter = Shooter::All {
+            tiling,
+            settled: true,
         };
-        let gathered = look(fine, light, 0x6175_6469)
-            .iter()
-            .map(|g| g.irradiance.as_dvec3())
-            .collect();
-        let factors = look(plain, ones, 0)
-            .iter()
-            .map(|g| f64::from(g.irradiance.x))
-            .collect();
-        (gathered, factors)
+        let gathered = evaluate(fine, &shooter, receivers).0;
+        if let Shooter::All { tiling, .. } = &mut shooter {
+            tiling.clusters.radiate(ones, 0);
+        }
+        let factors = evaluate(plain, &shooter, receivers).0;
+        let gathered = gathered.iter().map(|g| g.irradiance.as_dvec3());
+        let factors = factors.iter().map(|g| f64::from(g.irradiance.x));
+        (gathered.collect(), factors.collect())
     }
 }
 

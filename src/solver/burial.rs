@@ -42,14 +42,14 @@ pub(super) fn buried(
             dark
         })
         .collect();
-    let mut buried = vec![false; mesh.vertices.len()];
+    let mut buried = vec![false; count];
     for (vertex, is_buried) in receiving.iter().zip(blocks.concat()) {
-        buried[*vertex as usize] = is_buried;
+        buried[(*vertex - first) as usize] = is_buried;
     }
     if first == 0 {
         mesh.share(&mut buried, |corners| corners.iter().all(|buried| *buried));
     }
-    buried.split_off(first as usize)
+    buried
 }
 
 /// For each vertex, whether all of its rays with the given numbers end on sides that do not radiate.
