@@ -3,9 +3,11 @@
 mod frame;
 mod jitter;
 pub mod polygon;
+mod sets;
 
 pub use frame::Frame;
 pub use jitter::jitter;
+pub use sets::Sets;
 
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -19,6 +21,20 @@ pub const SURFACE_OFFSET: f64 = 1e-5;
 /// `point` lifted off its surface along the unit `normal`, in a scene of the given extent.
 pub fn lift(point: DVec3, normal: DVec3, extent: f64) -> DVec3 {
     point + normal * (SURFACE_OFFSET * extent)
+}
+
+/// The face of a cube about the origin, of six, that a normal meets. No two normals that meet the same are more than a right angle
+/// apart by much, so that vector areas of surfaces that face alike never cancel.
+pub fn facing(normal: DVec3) -> usize {
+    let size = normal.abs();
+    let axis = if size.x >= size.y.max(size.z) {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    2 * axis + usize::from(normal[axis] < 0.0)
 }
 
 /// A direction about `normal`, cosine-distributed for evenly distributed (a, b) in the unit square.

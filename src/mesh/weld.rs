@@ -6,6 +6,7 @@
 //! surfaces have no facets, and light is asked for once where it used to be asked for by each patch.
 
 use super::{Lattice, Mesh, NONE, Patch, UNIT};
+use crate::geometry::Sets;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -46,7 +47,7 @@ impl Mesh {
 
     fn weld(&mut self) {
         let corners = self.corner_vertices();
-        let mut sites = Sites::new(self.vertices.len());
+        let mut sites = Sets::new(self.vertices.len());
         for [a, b] in self.smooth_ends(&corners) {
             sites.join(a, b);
         }
@@ -234,46 +235,4 @@ fn angle_at(patch: &Patch, position: DVec3) -> f64 {
     let at = nearest.unwrap_or(0);
     let [before, after] = [at + count - 1, at + 1].map(|i| corners[i % count] - corners[at]);
     before.angle_between(after)
-}
-
-/// Disjoint sets of vertices.
-struct Sites {
-    parent: Vec<u32>,
-}
-
-impl Sites {
-    fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count as u32).collect(),
-        }
-    }
-
-    fn root(&mut self, mut vertex: u32) -> u32 {
-        while self.parent[vertex as usize] != vertex {
-            let above = self.parent[self.parent[vertex as usize] as usize];
-            self.parent[vertex as usize] = above;
-            vertex = above;
-        }
-        vertex
-    }
-
-    /// The lower root stays, so that the first vertex of a site leads it.
-    fn join(&mut self, a: u32, b: u32) {
-        let [a, b] = [a, b].map(|v| self.root(v));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-
-    /// The sets of more than one vertex, each in order.
-    fn groups(mut self) -> Vec<Vec<u32>> {
-        let mut members: Vec<(u32, u32)> = (0..self.parent.len() as u32)
-            .map(|vertex| (self.root(vertex), vertex))
-            .collect();
-        members.par_sort_unstable();
-        let groups = members
-            .chunk_by(|a, b| a.0 == b.0)
-            .filter(|group| group.len() > 1);
-        groups
-            .map(|group| group.iter().map(|(_, v)| *v).collect())
-            .collect()
-    }
 }

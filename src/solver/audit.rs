@@ -161,16 +161,10 @@ impl Solver<'_> {
         (fine, plain): (&Sampler, &Sampler),
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
-        let mut tiling = Tiling::new(&self.mesh);
-        let light = tiling.unshot(&self.mesh, whole, Sign::Positive);
-        let ones = vec![Spectrum::ONE; light.len()];
-        tiling.clusters.radiate(light, 0x6175_6469);
-        let mut shooter = Shooter::All {
-            tiling,
-            settled: true,
-        };
+        let mut shooter = Tiling::new(&self.mesh).radiating(&self.mesh, whole);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
+            let ones = vec![Spectrum::ONE; tiling.clusters.tiles().len()];
             tiling.clusters.radiate(ones, 0);
         }
         let factors = evaluate(plain, &shooter, receivers).0;

@@ -79,6 +79,12 @@ impl Light {
         vertices.iter().all(|v| unshot(v) == Spectrum::ZERO)
     }
 
+    /// Whether emitters have anything of one sign to shoot.
+    pub(super) fn is_direct(&self, sign: Sign) -> bool {
+        let unshot = |exitance: &Spectrum| sign.part(*exitance) != Spectrum::ZERO;
+        self.exitance_unshot.iter().any(unshot)
+    }
+
     /// Marks everything of one sign of a patch as shot.
     pub fn take(&mut self, mesh: &Mesh, patch: usize, sign: Sign) {
         let take = |unshot: &mut Spectrum| *unshot -= sign.part(*unshot) * sign.factor();

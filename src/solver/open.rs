@@ -6,6 +6,7 @@ use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::{Shooter, evaluate};
 use super::source::{cells_of, source_from};
+use super::tiling::Tiling;
 use crate::form_factor::{Receiver, Sampler, SourceThresholds, ToleranceScale};
 use crate::geometry::{cosine_direction, jitter};
 use crate::mesh::Mesh;
@@ -27,6 +28,8 @@ pub struct OpenLight<'a> {
     /// The irradiance that thresholds are multiples of, W/m².
     reference: f64,
     backing: Vec<Backing>,
+    /// All patches together, if they are many.
+    clusters: Option<Shooter>,
 }
 
 impl<'a> OpenLight<'a> {
@@ -55,7 +58,9 @@ impl<'a> OpenLight<'a> {
             };
             std::iter::repeat_n(backing, patch.corners().len() - 2)
         });
+        let clusters = options.clusters(mesh);
         Self {
+            clusters: clusters.then(|| Tiling::new(mesh).radiating(mesh, &whole)),
             mesh,
             whole,
             options,
@@ -135,6 +140,10 @@ impl<'a> OpenLight<'a> {
                 },
             },
         };
+        if let Some(all) = &self.clusters {
+            let (gathers, _) = evaluate(&sampler, all, receivers);
+            return gathers.iter().map(|g| g.irradiance).collect();
+        }
         let mut sums = vec![Power::ZERO; receivers.len()];
         for patch in 0..self.mesh.patches.len() {
             if self.whole.unshot_power(self.mesh, patch, Sign::Positive) == Power::ZERO {

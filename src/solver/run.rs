@@ -1,6 +1,7 @@
 //! The loop: select, shoot, refine, account, stop.
 
 use super::audit::Audit;
+use super::bounce::Neighbourhoods;
 use super::burial::buried;
 use super::course::{Course, Stage};
 use super::escape::Backing;
@@ -32,6 +33,8 @@ pub struct Solver<'a> {
     pub(super) tiling: Option<Tiling>,
     /// … and while they do.
     pub(super) radiated: Option<Shooter>,
+    /// Where reflected light arrives in such a scene; known once the mesh is.
+    pub(super) neighbourhoods: Option<Neighbourhoods>,
     /// Area of one square of the frame's unit, m².
     pub(super) square_metres: f64,
     pub(super) reference: f64,
@@ -86,6 +89,7 @@ impl<'a> Solver<'a> {
             backing: backing(scene, &mesh),
             tiling: None,
             radiated: None,
+            neighbourhoods: None,
             square_metres: (scene.metres_per_unit / mesh.frame.scale()).powi(2),
             reference: if area > 0.0 { emitted / area } else { 0.0 },
             mesh,

@@ -85,7 +85,7 @@ pub(super) fn shoot_at(
 }
 
 /// A vertex as a receiver.
-fn receiver_at(mesh: &Mesh, light: &Light, vertex: u32) -> (Receiver, u32) {
+pub(super) fn receiver_at(mesh: &Mesh, light: &Light, vertex: u32) -> (Receiver, u32) {
     let (point, normal) = mesh.receiver(vertex);
     let irradiance = light.irradiance[vertex as usize].max_element();
     (

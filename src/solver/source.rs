@@ -4,7 +4,7 @@ use super::light::{Light, Sign};
 use super::options::{Options, Shooting};
 use super::run::Solver;
 use crate::form_factor::{Source, SourceThresholds};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
@@ -69,7 +69,12 @@ pub(super) fn cells_on(
         return vec![mean.as_vec3(); 1 << (2 * levels)];
     }
     let mut cells = interpolated_cells(mesh, patch, levels, &radiosity);
-    let shot: Power = weighted_mean(mesh, patch, levels, &cells);
+    let areas = areas(of, levels);
+    let weighted = cells
+        .iter()
+        .zip(&areas)
+        .map(|(b, area)| b.as_dvec3() * *area);
+    let shot = weighted.sum::<Power>() / of.area;
     // Where the cells missed nearly all of it, all have the mean.
     let missed = shot.cmple(mean * 1e-3);
     let correction = Power::select(missed, Power::ZERO, mean / shot).as_vec3();
@@ -167,15 +172,19 @@ fn cell_mean(
     mesh.interpolated(leaf, point, radiosity)
 }
 
-/// Mean of the cells, weighted by their areas.
-fn weighted_mean(mesh: &Mesh, patch: usize, levels: u32, cells: &[Spectrum]) -> Power {
-    let of = &mesh.patches[patch];
-    let geometry = Source::new(of.corners(), of.normal, levels, cells);
-    geometry
-        .finest()
-        .map(|(cell, _)| cell)
-        .zip(cells)
-        .map(|(cell, b)| b.as_dvec3() * cell.area())
-        .sum::<Power>()
-        / of.area
+/// The areas of the cells. Those of triangles and parallelograms are all the same.
+fn areas(of: &Patch, levels: u32) -> Vec<f64> {
+    let count = 1 << (2 * levels);
+    if let [a, b, c, d] = *of.corners()
+        && (a + c).distance(b + d) > 1e-9 * a.distance(c)
+    {
+        let geometry = Source::new(
+            of.corners(),
+            of.normal,
+            levels,
+            &vec![Spectrum::ZERO; count],
+        );
+        return geometry.finest().map(|(cell, _)| cell.area()).collect();
+    }
+    vec![of.area / count as f64; count]
 }

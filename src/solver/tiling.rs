@@ -3,6 +3,7 @@
 use super::escape::Part;
 use super::light::{Light, Sign};
 use super::options::Shooting;
+use super::shoot::Shooter;
 use super::source::{Quad, cells_at, cells_on};
 use crate::form_factor::{Clusters, DEEPEST, Tile};
 use crate::mesh::{Mesh, Patch};
@@ -34,6 +35,16 @@ impl Tiling {
         Self {
             clusters: Clusters::new(tiles.collect(), mesh.frame.extent()),
             levels,
+        }
+    }
+
+    /// The tiles with all of `whole` to send, to be looked at once more.
+    pub fn radiating(mut self, mesh: &Mesh, whole: &Light) -> Shooter {
+        let radiosity = self.unshot(mesh, whole, Sign::Positive);
+        self.clusters.radiate(radiosity, 0x6175_6469);
+        Shooter::All {
+            tiling: self,
+            settled: true,
         }
     }
 
@@ -96,5 +107,5 @@ fn levels(mesh: &Mesh) -> Vec<Option<u32>> {
 fn tile(patch: &Patch, cell: &Quad) -> Tile {
     let corners = cell.map(|[u, v]| patch.position_at(u, v));
     let count = patch.corners().len();
-    Tile::new(&corners[..count], patch.normal)
+    Tile::new(&corners[..count], patch.normal, patch.back)
 }

@@ -1,24 +1,23 @@
 //! A scene of many patches: all that is unshot is shot at once, as clusters; a wave of light after the other.
 //!
-//! Each wave arrives at the vertices as a shot does, slice by slice, and refines the mesh as a shot does. What it takes is a cut
-//! through the tree of clusters for each vertex, not a visit to each vertex for each patch.
+//! Direct light arrives at the vertices as a shot does, slice by slice, and refines the mesh as a shot does; so does the gathering at the
+//! end, without refining. What either takes is a cut through the tree of clusters for each vertex, not a visit to each vertex for each
+//! patch. The waves in between arrive at neighbourhoods (`bounce.rs`).
 
 use super::course::{ALL, Shot, Stage};
+use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::observer::Phase;
 use super::run::Solver;
 use super::shoot::{Beam, Shooter, shoot_at};
 use super::tiling::Tiling;
-use crate::form_factor::Gather;
+use crate::form_factor::{Gather, Sampler};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use serde::{Deserialize, Serialize};
 
 /// Vertices that a wave arrives at between two looks at the observer.
 const SLICE: usize = 1 << 16;
-
-/// A wave refines the mesh if it carries this part of the emitted power.
-const MESHING: f64 = 0.3;
 
 /// How much coarser the thresholds ε_fe and ε_fd of waves are than those of the gathering at the end.
 const COARSER: f64 = 2.0;
@@ -60,7 +59,7 @@ pub(super) enum Kind {
     Whole(Spectrum),
 }
 
-impl Solver<'_> {
+impl<'a> Solver<'a> {
     /// Whether there are so many patches that they shoot as clusters.
     pub(super) fn is_clustered(&self) -> bool {
         self.options.clusters(&self.mesh)
@@ -82,7 +81,13 @@ impl Solver<'_> {
         let tiling = self.tiling();
         let cells = tiling.unshot(&self.mesh, &self.light, sign);
         self.tiling = Some(tiling);
-        self.set_out(Kind::Unshot(sign), cells, power);
+        if self.light.is_direct(sign) {
+            // The mesh is refined: its neighbourhoods will be others.
+            self.neighbourhoods = None;
+            self.set_out(Kind::Unshot(sign), cells, power);
+        } else {
+            self.bounce(sign, &cells, power);
+        }
     }
 
     /// All light sets out once more.
@@ -127,11 +132,11 @@ impl Solver<'_> {
             Some(all) => all,
             None => self.radiating(&wave.cells, settled),
         };
-        let mut sampler = self.sampler();
-        if !settled {
-            sampler.thresholds.difference *= COARSER;
-            sampler.thresholds.estimate *= COARSER;
-        }
+        let sampler = if settled {
+            self.sampler()
+        } else {
+            self.coarse_sampler()
+        };
         let beam = Beam {
             sampler: &sampler,
             shooter: &all,
@@ -151,6 +156,14 @@ impl Solver<'_> {
         } else {
             self.course.stage = Stage::Waving(wave);
         }
+    }
+
+    /// For light that the gathering at the end will ask for once more.
+    pub(super) fn coarse_sampler(&self) -> Sampler<'a> {
+        let mut sampler = self.sampler();
+        sampler.thresholds.difference *= COARSER;
+        sampler.thresholds.estimate *= COARSER;
+        sampler
     }
 
     /// A wave has arrived everywhere.
@@ -175,7 +188,8 @@ impl Solver<'_> {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
         }
-        let meshes = wave.power >= MESHING && self.course.meshing_ended.is_none();
+        let meshes =
+            wave.power >= self.options.meshing_power && self.course.meshing_ended.is_none();
         let may_split = |e: &u32| self.mesh.may_split(*e);
         let shot = Shot {
             shooter: ALL,
@@ -203,8 +217,7 @@ impl Solver<'_> {
         let Some(all) = self.radiated.take() else {
             return;
         };
-        let seed = self.course.shots as u32;
-        let lost = self.escape(ALL as usize, &all, wave.power, seed);
+        let lost = self.escape_of_all(&all, wave.power);
         let sent: f64 = (0..self.mesh.patches.len())
             .map(|p| {
                 whole
@@ -218,6 +231,11 @@ impl Solver<'_> {
         let sums = vec![((received + lost.all).element_sum() / sent, sent)];
         self.keep_tiling(all);
         self.take_over(irradiance, &whole, lost, sums);
+    }
+
+    /// What escapes of a fraction `power` of what is emitted.
+    pub(super) fn escape_of_all(&self, all: &Shooter, power: f64) -> Lost {
+        self.escape(ALL as usize, all, power, self.course.shots as u32)
     }
 
     /// Keeps the tiles for the next wave.

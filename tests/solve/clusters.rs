@@ -1,11 +1,11 @@
 //! All patches shooting at once, as clusters: what a scene of many small polygons is solved with, tried where the answer is known.
 
 use super::common::reference::{Deviation, table};
-use super::common::shapes::{add_grey, add_quad, add_triangle, empty};
+use super::common::shapes::{add_cuboid, add_grey, add_quad, add_triangle, empty};
 use super::resume::{in_sessions, settings};
 use super::{bits, bundled, draft, engines, solved, solved_by};
 use glam::DVec3;
-use radiosity::scene::Scene;
+use radiosity::scene::{Scene, Sides};
 use radiosity::solution::Solution;
 use radiosity::solver::{Options, Preset};
 use radiosity::visibility::EngineChoice;
@@ -26,10 +26,10 @@ fn the_cornell_box_comes_out_as_path_traced() {
     let solution = solved(&scene, clustered(Preset::Standard.options()));
     let found = Deviation::of(&solution, &table("cornell_irradiance.csv"));
     // Shot patch by patch it is 0.5 % and 0.2 %; a cluster is seen or hidden as a whole.
-    assert!(found.n_rms <= 0.03 && found.bias.abs() <= 0.02, "{found:?}");
+    assert!(found.n_rms <= 0.02 && found.bias.abs() <= 0.01, "{found:?}");
     let sent = solution.report.audit.and_then(|audit| audit.sent_sum);
     let sent = sent.expect("light was gathered at the end");
-    assert!((sent.mean - 1.0).abs() < 0.015, "{sent:?}");
+    assert!((sent.mean - 1.0).abs() < 0.005, "{sent:?}");
 }
 
 #[test]
@@ -107,6 +107,35 @@ fn ball_in_a_room() -> Scene {
         }
     }
     scene
+}
+
+#[test]
+fn the_inside_of_a_thin_box_stays_dark() {
+    let mut scene = super::furnace::cuboid();
+    let grey = add_grey(&mut scene, 0.8, 0.0);
+    let (low, high) = (DVec3::new(0.6, 0.4, 0.5), DVec3::new(1.3, 0.9, 0.52));
+    let first = scene.surfaces.len();
+    add_cuboid(&mut scene, grey, [low, high], false);
+    for surface in &mut scene.surfaces[first..] {
+        surface.sides = Sides::Both;
+    }
+    let solution = solved(&scene, clustered(draft()));
+    let mesh = &solution.mesh;
+    let mut outside: f32 = 0.0;
+    for (of, irradiance) in mesh.vertices.iter().zip(&solution.light.irradiance) {
+        let patch = &mesh.patches[of.patch as usize];
+        if patch.surface as usize >= first && patch.back {
+            assert_eq!(
+                irradiance.x,
+                0.0,
+                "inside, at {:?}",
+                mesh.frame.leave(of.point)
+            );
+        } else {
+            outside = outside.max(irradiance.x);
+        }
+    }
+    assert!(outside > 0.0);
 }
 
 /// Irradiance at the vertices of patches that are no floor and no light, by the bits of the place and the side.

@@ -1,7 +1,7 @@
-//! Grouping tiles: first by the way they face, then in halves of space.
+//! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{Children, Clusters, Node, Sends, Tile};
-use crate::geometry::SURFACE_OFFSET;
+use super::{Clusters, Node, Sends, Tile};
+use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
 
@@ -15,7 +15,11 @@ impl Clusters {
     /// The tree over `tiles`, in a scene of the given extent; nothing radiates yet.
     pub fn new(tiles: Vec<Tile>, extent: f64) -> Self {
         let mut order: Vec<u32> = (0..tiles.len() as u32).collect();
-        order.sort_by_key(|tile| face(tiles[*tile as usize].normal));
+        let side = |tile: &u32| {
+            let of = &tiles[*tile as usize];
+            (facing(of.normal.as_dvec3()), of.back)
+        };
+        order.sort_by_key(side);
         let mut builder = Builder {
             tiles: &tiles,
             centres: tiles.iter().map(Tile::centre).collect(),
@@ -23,9 +27,7 @@ impl Clusters {
         };
         let mut roots = Vec::new();
         let mut first = 0;
-        let groups = order.chunk_by_mut(|a, b| {
-            face(tiles[*a as usize].normal) == face(tiles[*b as usize].normal)
-        });
+        let groups = order.chunk_by_mut(|a, b| side(a) == side(b));
         for group in groups {
             roots.push(builder.nodes.len() as u32);
             builder.add(group, first, 0);
@@ -34,27 +36,16 @@ impl Clusters {
         let nodes = builder.nodes;
         Self {
             radiosity: vec![Spectrum::ZERO; tiles.len()],
+            sends: vec![Sends::default(); nodes.len()],
+            sums: vec![0.0; tiles.len() + 1],
             tiles,
             nodes,
             roots,
             order,
+            seed: 0,
             offset: (SURFACE_OFFSET * extent) as f32,
         }
     }
-}
-
-/// The face of the cube that a normal meets. No two normals that meet the same are more than a right angle apart by much, so that
-/// the vector areas of a cluster never cancel.
-fn face(normal: Vec3) -> usize {
-    let size = normal.abs();
-    let axis = if size.x >= size.y.max(size.z) {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    2 * axis + usize::from(normal[axis] < 0.0)
 }
 
 struct Builder<'a> {
@@ -73,7 +64,7 @@ impl Builder<'_> {
             let middle = self.halve(group, depth);
             let (left, right) = group.split_at_mut(middle);
             self.add(left, first, depth + 1);
-            self.nodes[number].children = Children::Two(self.nodes.len() as u32);
+            self.nodes[number].second = self.nodes.len() as u32;
             self.add(right, first + middle as u32, depth + 1);
         }
     }
@@ -97,13 +88,6 @@ impl Builder<'_> {
                 .map(|c| (*c - centre).dot(axis).abs())
                 .fold(0.0, f32::max)
         };
-        let spread = |t: &u32| {
-            let (tile, own) = (of(t), self.centres[*t as usize]);
-            let corners = tile.corners[..tile.corner_count()].iter();
-            // About its own centre a triangle or parallelogram has a twelfth of what its corners have.
-            let inside = corners.map(|c| c.distance_squared(own)).sum::<f32>() / 12.0;
-            tile.area() * (inside + own.distance_squared(centre))
-        };
         // The sine from the normals themselves: from the cosine it would be lost in rounding where they are all but parallel.
         let sine_of = |t: &u32| of(t).normal.cross(axis).length();
         let cosine = group
@@ -117,13 +101,11 @@ impl Builder<'_> {
             cone: (cosine, if cosine > 0.0 { sine } else { 1.0 }),
             axis,
             thickness: group.iter().map(aside).fold(0.0, f32::max),
-            area: vector_area.length(),
-            variance: 0.5 * group.iter().map(spread).sum::<f32>() / areas.max(f32::MIN_POSITIVE),
-            children: Children::Tiles {
-                first,
-                count: group.len() as u32,
-            },
-            sends: Sends::default(),
+            strength: 0.0,
+            peak: 0.0,
+            second: 0,
+            first,
+            end: first + group.len() as u32,
         }
     }
 

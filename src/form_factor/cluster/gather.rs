@@ -1,7 +1,7 @@
 //! What a block of points receives from all clusters: for each point a cut through the tree, one ray a cluster.
 
+use super::Clusters;
 use super::view::View;
-use super::{Children, Clusters};
 use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
 use crate::form_factor::partition::Limits;
 use crate::form_factor::source::{Cell, SourceShape};
@@ -14,9 +14,9 @@ use glam::{DVec3, Vec3};
 /// Clusters and tiles that one point may gather from before its thresholds are doubled.
 const MOST: usize = 2048;
 
-/// Light that is known to be there counts at least this part of what would be there without occlusion: where it is dark, thresholds
-/// need not follow the light to nothing.
-const LEAST_KNOWN: f32 = 0.02;
+/// Light that is known to be there counts at least this part of the scene's reference: where it is dark, thresholds need not follow
+/// the light to nothing.
+const LEAST_KNOWN: f32 = 0.1;
 
 /// A cluster that looks larger than this, radius over distance, is not taken whole for the first guess of the light at a point.
 const GUESS: f32 = 1.0;
@@ -56,8 +56,8 @@ pub struct ClusterScratch {
 }
 
 impl Sampler<'_> {
-    /// Evaluates `clusters` at each receiver into `gathers`; returns the number of rays. With `settled`, the irradiance of the
-    /// receivers is what they have in the end, and thresholds follow that alone.
+    /// Evaluates `clusters` at each receiver into `gathers`; returns the number of rays. With `settled`, neighbours send their rays
+    /// to the same places, so that what they find differs by little; else each draws its own, so that the mean of many is right.
     pub fn gather_clusters(
         &self,
         clusters: &Clusters,
@@ -70,7 +70,7 @@ impl Sampler<'_> {
         scratch.ends.clear();
         scratch.fans.clear();
         for (receiver, key) in receivers {
-            let limits = self.cluster_limits(clusters, receiver, settled, &mut scratch.pending);
+            let limits = self.cluster_limits(clusters, receiver, &mut scratch.pending);
             scratch.targets.clear();
             Cut {
                 pool: Pool::default(),
@@ -78,6 +78,7 @@ impl Sampler<'_> {
                 clusters,
                 receiver,
                 key: *key,
+                settled,
                 limits,
             }
             .take(scratch);
@@ -97,15 +98,14 @@ impl Sampler<'_> {
         &self,
         clusters: &Clusters,
         receiver: &Receiver,
-        settled: bool,
         pending: &mut Vec<u32>,
     ) -> Limits {
-        let expected = clusters.expected(receiver, pending);
-        let local = if settled {
-            receiver.irradiance.max(LEAST_KNOWN * expected)
+        let known = if receiver.irradiance > 0.0 {
+            receiver.irradiance
         } else {
-            receiver.irradiance.max(expected)
+            clusters.expected(receiver, pending)
         };
+        let local = known.max(LEAST_KNOWN * self.thresholds.scale.reference as f32);
         let unit = self.thresholds.scale.at(f64::from(local));
         Limits {
             difference: self.thresholds.difference * unit,
@@ -159,32 +159,18 @@ impl Clusters {
             let Some(view) = node.view(point, normal, self.hair()) else {
                 continue;
             };
-            match node.children {
-                Children::Two(second) if view.size > GUESS => pending.extend([second, number + 1]),
-                _ => sum += view.contribution,
+            if node.second != 0 && view.size > GUESS {
+                pending.extend([node.second, number + 1]);
+            } else {
+                let sends = &self.sends[number as usize];
+                sum += if view.whole {
+                    sends.arriving(point, normal, node.radius)
+                } else {
+                    sends.drawn(&sends.aim, point, normal, view.bound)
+                };
             }
         }
         sum.max_element()
-    }
-
-    /// A point of a cluster that a ray to it can be aimed at: one that faces the point, if there is one on the way down.
-    fn target(&self, mut number: u32, point: Vec3) -> Vec3 {
-        loop {
-            let node = &self.nodes[number as usize];
-            let to = node.sends.target - point;
-            match node.children {
-                Children::Two(second) if node.sends.facing.dot(to) >= 0.0 => {
-                    let towards = |n: u32| -self.nodes[n as usize].sends.flux.dot(to);
-                    let first = number + 1;
-                    number = if towards(first) >= towards(second) {
-                        first
-                    } else {
-                        second
-                    };
-                }
-                _ => return node.sends.target,
-            }
-        }
     }
 }
 
@@ -194,6 +180,7 @@ struct Cut<'a> {
     clusters: &'a Clusters,
     receiver: &'a Receiver,
     key: u32,
+    settled: bool,
     limits: Limits,
     pool: Pool,
 }
@@ -205,7 +192,7 @@ impl Cut<'_> {
             self.receiver.point.as_vec3(),
             self.receiver.normal.as_vec3(),
         );
-        let begun = scratch.parts.len();
+        let mut most = scratch.parts.len() + MOST;
         scratch.pending.clear();
         scratch.pending.extend(self.clusters.roots.iter().rev());
         while let Some(number) = scratch.pending.pop() {
@@ -213,19 +200,17 @@ impl Cut<'_> {
             let Some(view) = node.view(point, normal, self.clusters.hair()) else {
                 continue;
             };
-            if self.is_fine(&view) {
-                if view.measure > 0.0 {
-                    let target = self.clusters.target(number, point);
-                    self.take_one(view.contribution, target, scratch);
-                }
-            } else if let Children::Two(second) = node.children {
-                scratch.pending.extend([second, number + 1]);
-            } else if let Children::Tiles { first, count } = node.children {
-                for place in first..first + count {
+            if self.is_fine(number, &view) {
+                self.take_cluster(number, &view, scratch);
+            } else if node.second != 0 {
+                scratch.pending.extend([node.second, number + 1]);
+            } else {
+                for place in node.first..node.end {
                     self.take_tile(self.clusters.order[place as usize], scratch);
                 }
             }
-            if scratch.parts.len() - begun > MOST {
+            if scratch.parts.len() > most {
+                most += MOST / 2;
                 self.limits.difference *= 2.0;
                 self.limits.estimate *= 2.0;
             }
@@ -265,7 +250,7 @@ impl Cut<'_> {
     }
 
     /// Whether a cluster needs not be opened.
-    fn is_fine(&self, view: &View) -> bool {
+    fn is_fine(&self, number: u32, view: &View) -> bool {
         let Limits {
             difference,
             estimate,
@@ -274,9 +259,41 @@ impl Cut<'_> {
         if !view.whole {
             return bound <= 0.5 * estimate;
         }
-        let measure = f64::from(view.measure);
-        let left = 0.5 * f64::from(view.size * view.size) * measure;
-        measure <= estimate && view.size < 0.5 && left <= difference || bound <= difference
+        bound <= difference
+            || view.size < 0.5 && {
+                let measure = f64::from(self.arriving(number).max_element());
+                let left = 0.5 * f64::from(view.size * view.size) * measure;
+                measure <= estimate && left <= difference
+            }
+    }
+
+    fn arriving(&self, number: u32) -> Spectrum {
+        let (point, normal) = (
+            self.receiver.point.as_vec3(),
+            self.receiver.normal.as_vec3(),
+        );
+        let radius = self.clusters.nodes[number as usize].radius;
+        self.clusters.sends[number as usize].arriving(point, normal, radius)
+    }
+
+    fn take_cluster(&mut self, number: u32, view: &View, scratch: &mut ClusterScratch) {
+        let sends = &self.clusters.sends[number as usize];
+        let mut aim = sends.aim;
+        let contribution = if view.whole {
+            self.arriving(number)
+        } else {
+            if !self.settled {
+                aim = self.clusters.draw(number, self.key);
+            }
+            let (point, normal) = (
+                self.receiver.point.as_vec3(),
+                self.receiver.normal.as_vec3(),
+            );
+            sends.drawn(&aim, point, normal, view.bound)
+        };
+        if contribution.max_element() > 0.0 {
+            self.take_one(contribution, aim.target, scratch);
+        }
     }
 
     /// Clusters take Eq. (1) where the five-times rule would; a single tile is near.

@@ -1,73 +1,135 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Children, Clusters, Sends, Tile};
+use super::{Aim, Clusters, Node, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
+use glam::{Vec3, Vec3Swizzles};
 
 impl Clusters {
     /// Takes over the radiosity of each tile, in their order; `seed` draws the points that rays are aimed at.
     pub fn radiate(&mut self, radiosity: Vec<Spectrum>, seed: u32) {
         assert_eq!(radiosity.len(), self.tiles.len());
         self.radiosity = radiosity;
+        self.seed = seed;
+        let mut sum = 0.0;
+        for (place, tile) in self.order.iter().enumerate() {
+            self.sums[place] = sum;
+            sum += f64::from(self.weight(*tile));
+        }
+        self.sums[self.order.len()] = sum;
         for number in (0..self.nodes.len()).rev() {
-            let sends = match self.nodes[number].children {
-                Children::Two(second) => {
-                    let [a, b] = [number + 1, second as usize].map(|n| self.nodes[n].sends);
-                    joined(a, b, jitter(number as u32, seed)[0] as f32)
-                }
-                Children::Tiles { first, count } => self.bucket(first, count, number as u32, seed),
+            let node = self.nodes[number];
+            let (sends, peak) = if node.second == 0 {
+                self.bucket(&node, number as u32)
+            } else {
+                let [a, b] = [number + 1, node.second as usize];
+                let draw = jitter(number as u32, seed)[0] as f32;
+                let peak = self.nodes[a].peak.max(self.nodes[b].peak);
+                (joined(self.sends[a], self.sends[b], draw), peak)
             };
-            self.nodes[number].sends = sends;
+            self.nodes[number].strength = sends.weight * sends.colour.max_element();
+            self.nodes[number].peak = peak;
+            self.sends[number] = sends;
         }
     }
 
-    fn bucket(&self, first: u32, count: u32, node: u32, seed: u32) -> Sends {
-        let tiles = &self.order[first as usize..(first + count) as usize];
-        let of = |tile: &u32| {
-            let tile = *tile as usize;
-            sent_by(
-                &self.tiles[tile],
-                self.radiosity[tile],
-                jitter(tile as u32, !seed),
-                self.offset,
-            )
-        };
-        let draw = |place: usize| jitter(node.wrapping_add(place as u32), seed)[1] as f32;
-        let sends = tiles.iter().map(of).enumerate();
-        sends.fold(Sends::default(), |sum, (place, tile)| {
-            joined(sum, tile, draw(place))
-        })
+    /// Area × mean radiosity of a tile.
+    fn weight(&self, tile: u32) -> f32 {
+        let mean = self.radiosity[tile as usize].element_sum() / 3.0;
+        self.tiles[tile as usize].area() * mean
     }
-}
 
-fn sent_by(tile: &Tile, radiosity: Spectrum, [s, t]: [f64; 2], offset: f32) -> Sends {
-    let mean = radiosity.element_sum() / 3.0;
-    let weight = tile.area() * mean;
-    let place = |x: f64| (0.05 + 0.9 * x) as f32;
-    Sends {
-        flux: tile.normal * weight,
-        weight,
-        colour: if mean > 0.0 {
-            radiosity / mean
-        } else {
-            Spectrum::ZERO
-        },
-        target: tile.at(place(s), place(t)) + tile.normal * offset,
-        facing: tile.normal,
+    fn aim(&self, tile: u32, at: [f64; 2]) -> Aim {
+        let of = &self.tiles[tile as usize];
+        let [s, t] = at.map(|x| (0.05 + 0.9 * x) as f32);
+        Aim {
+            target: of.at(s, t) + of.normal * self.offset,
+            normal: of.normal,
+        }
+    }
+
+    /// An aim in a cluster, drawn anew.
+    pub(super) fn draw(&self, number: u32, key: u32) -> Aim {
+        let [draw, s] = jitter(key, number ^ self.seed);
+        let node = &self.nodes[number as usize];
+        let sums = &self.sums[node.first as usize..=node.end as usize];
+        let passed = sums[0] + draw * (sums[sums.len() - 1] - sums[0]);
+        let place = sums
+            .partition_point(|sum| *sum <= passed)
+            .clamp(1, sums.len() - 1)
+            - 1;
+        let tile = self.order[node.first as usize + place];
+        self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
+    }
+
+    /// What a leaf sends, and its peak.
+    fn bucket(&self, node: &Node, number: u32) -> (Sends, f32) {
+        let tiles = &self.order[node.first as usize..node.end as usize];
+        let draw = |place: usize| jitter(number.wrapping_add(place as u32), self.seed)[1] as f32;
+        let all = tiles.iter().enumerate();
+        let sends = all.fold(Sends::default(), |sum, (place, tile)| {
+            joined(sum, self.sent_by(*tile), draw(place))
+        });
+        let peaks = tiles
+            .iter()
+            .map(|t| self.radiosity[*t as usize].max_element());
+        (sends, peaks.fold(0.0, f32::max))
+    }
+
+    fn sent_by(&self, number: u32) -> Sends {
+        let tile = &self.tiles[number as usize];
+        let weight = self.weight(number);
+        let centre = tile.centre();
+        let corners = &tile.corners[..tile.corner_count()];
+        // About its own centre a triangle or parallelogram has a twelfth of what its corners have.
+        let inside = corners
+            .iter()
+            .map(|corner| products(*corner - centre, 1.0 / 12.0));
+        let mean = self.radiosity[number as usize].element_sum() / 3.0;
+        Sends {
+            flux: tile.normal * weight,
+            weight,
+            centre,
+            spread: inside.fold([Vec3::ZERO; 2], plus),
+            colour: if mean > 0.0 {
+                self.radiosity[number as usize] / mean
+            } else {
+                Spectrum::ZERO
+            },
+            aim: self.aim(number, jitter(number, !self.seed)),
+        }
     }
 }
 
 /// Both together; rays go where one of them has its target, in proportion to what they send.
 fn joined(a: Sends, b: Sends, draw: f32) -> Sends {
     let weight = a.weight + b.weight;
-    if weight <= 0.0 {
+    if a.weight <= 0.0 {
+        return b;
+    }
+    if b.weight <= 0.0 {
         return a;
     }
     let drawn = if draw * weight < a.weight { a } else { b };
+    let (of_a, of_b) = (a.weight / weight, b.weight / weight);
+    let apart = products(b.centre - a.centre, of_a * of_b);
+    let spread = [0, 1].map(|i| a.spread[i] * of_a + b.spread[i] * of_b + apart[i]);
     Sends {
         flux: a.flux + b.flux,
         weight,
+        centre: a.centre * of_a + b.centre * of_b,
+        spread,
         colour: (a.colour * a.weight + b.colour * b.weight) / weight,
         ..drawn
     }
+}
+
+/// `factor` times the products of a vector's components: xx, yy, zz and yz, zx, xy.
+fn products(of: Vec3, factor: f32) -> [Vec3; 2] {
+    let scaled = of * factor;
+    [of * scaled, of.yzx() * scaled.zxy()]
+}
+
+fn plus(a: [Vec3; 2], b: [Vec3; 2]) -> [Vec3; 2] {
+    [a[0] + b[0], a[1] + b[1]]
 }

@@ -28,16 +28,19 @@ pub struct Tile {
     pub corners: [Vec3; 4],
     /// Unit normal of the radiating side.
     pub normal: Vec3,
+    /// Whether this is the back of a surface: backs are grouped apart, as many are the dark insides of things.
+    pub back: bool,
 }
 
 impl Tile {
     /// A tile with three or four corners.
-    pub fn new(corners: &[DVec3], normal: DVec3) -> Self {
+    pub fn new(corners: &[DVec3], normal: DVec3, back: bool) -> Self {
         let fourth = *corners.get(3).unwrap_or(&corners[0]);
         let corners = [corners[0], corners[1], corners[2], fourth];
         Self {
             corners: corners.map(|corner| corner.as_vec3()),
             normal: normal.as_vec3(),
+            back,
         }
     }
 
@@ -85,15 +88,22 @@ pub struct Clusters {
     radiosity: Vec<Spectrum>,
     /// In depth-first order: the first child of an inner node follows it.
     nodes: Vec<Node>,
+    /// What each of them sends.
+    sends: Vec<Sends>,
     roots: Vec<u32>,
     /// The tiles in the order of the leaves.
     order: Vec<u32>,
+    /// Σ area × mean radiosity of the tiles before each in that order, and of all.
+    sums: Vec<f64>,
     /// By how much the targets of rays are lifted off their tiles.
     offset: f32,
+    /// Of the points that rays are aimed at.
+    seed: u32,
 }
 
-/// A cluster.
+/// A cluster: what it takes to decide whether it is to be opened, in one line of the cache.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 struct Node {
     centre: Vec3,
     /// All tiles are within this distance from the centre.
@@ -103,21 +113,14 @@ struct Node {
     axis: Vec3,
     /// No tile is farther than this from the plane through the centre across the axis.
     thickness: f32,
-    /// Length of the sum of the tiles' vector areas.
-    area: f32,
-    /// Variance of a point of it along one axis of its plane, were it the same along both.
-    variance: f32,
-    children: Children,
-    sends: Sends,
-}
-
-/// What is below a cluster.
-#[derive(Debug, Clone, Copy)]
-enum Children {
-    /// The next node and this one.
-    Two(u32),
-    /// Tiles `order[first..first + count]`.
-    Tiles { first: u32, count: u32 },
+    /// Σ area × radiosity, and the largest radiosity, of the strongest channel.
+    strength: f32,
+    peak: f32,
+    /// The second child; the first follows this node. 0 for a leaf.
+    second: u32,
+    /// Its tiles are `order[first..end]`.
+    first: u32,
+    end: u32,
 }
 
 /// What a cluster sends.
@@ -127,12 +130,21 @@ struct Sends {
     flux: Vec3,
     /// Σ area × mean radiosity of the channels.
     weight: f32,
+    /// Where it comes from: the mean of its points, weighted by what they send …
+    centre: Vec3,
+    /// … and their covariance, m²: xx, yy, zz and yz, zx, xy.
+    spread: [Vec3; 2],
     /// The radiosity by channel over its mean.
     colour: Spectrum,
-    /// Where rays to it are aimed: a point of one of its tiles, drawn in proportion to what they send.
+    aim: Aim,
+}
+
+/// Where a ray to a cluster is aimed: a point of one of its tiles, drawn in proportion to what they send.
+#[derive(Debug, Clone, Copy, Default)]
+struct Aim {
     target: Vec3,
     /// The normal there.
-    facing: Vec3,
+    normal: Vec3,
 }
 
 impl Clusters {
@@ -143,7 +155,8 @@ impl Clusters {
 
     /// Memory that the tree holds, bytes.
     pub fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>()
-            + self.tiles.capacity() * (size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>())
+        self.nodes.capacity() * (size_of::<Node>() + size_of::<Sends>())
+            + self.tiles.capacity()
+                * (size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>() + size_of::<f64>())
     }
 }
