@@ -26,7 +26,7 @@
 //!
 //! * Imports run one way, as each room's first paragraph says.
 //! * The solver does no I/O and prints nothing; it speaks to a [`solver::Observer`].
-//! * `unsafe` lives in the crate `embree4-sys` and in [`visibility`] only.
+//! * `unsafe` lives in the crate `embree4-sys`, in [`visibility`] and in `simd` only.
 //! * The same input, engine and instruction set give the same bits for any number of threads.
 //!
 //! `tests/tidy` and `tests/solve` hold them.
@@ -43,6 +43,7 @@ mod pipeline;
 pub mod radiometry;
 pub mod render;
 pub mod scene;
+mod simd;
 pub mod solution;
 pub mod solver;
 mod threads;

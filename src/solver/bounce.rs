@@ -6,14 +6,12 @@
 use super::light::Sign;
 use super::run::Solver;
 use super::shoot::{Beam, evaluate, receiver_at};
+use super::tiling::SIZE;
 use crate::geometry::{Sets, facing, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::Spectrum;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
-
-/// Length of the sides of the cubes as a fraction of the scene's extent: that of the tiles.
-const SIZE: f64 = 1.0 / 64.0;
 
 /// Slices of a cube.
 const SLICES: f64 = 4.0;
@@ -34,6 +32,7 @@ pub(super) struct Neighbourhoods {
 
 impl Neighbourhoods {
     pub fn new(mesh: &Mesh) -> Self {
+        // As long as tiles.
         let side = SIZE * mesh.frame.extent();
         let bodies = bodies(mesh);
         let body = |v: u32| bodies[mesh.vertices[v as usize].patch as usize];
@@ -141,9 +140,7 @@ impl Solver<'_> {
         let neighbourhoods = self.neighbourhoods.take();
         let neighbourhoods = neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh));
         let arrived = self.arrivals_near(beam, &neighbourhoods);
-        for patch in 0..self.mesh.patches.len() {
-            self.light.take(&self.mesh, patch, sign);
-        }
+        self.light.take_all(&self.mesh, sign);
         for (irradiance, vertices) in arrived.iter().zip(neighbourhoods.iter()) {
             for vertex in vertices {
                 self.light.irradiance[*vertex as usize] += *irradiance;

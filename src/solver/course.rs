@@ -55,6 +55,8 @@ pub(super) enum Stage {
     Finished,
     /// The next vertices that a wave arrives at.
     Waving(Wave),
+    /// A pass of refinement after all light was gathered as clusters.
+    Settling(Shot),
 }
 
 /// A shot that has arrived at the vertices there were, while the mesh is refined for it.
@@ -109,7 +111,7 @@ impl Course {
         match &self.stage {
             Stage::Shooting => Phase::Shooting,
             Stage::Waving(wave) => wave.phase(mesh),
-            Stage::Refining(_) => Phase::Refining,
+            Stage::Refining(_) | Stage::Settling(_) => Phase::Refining,
             Stage::Gathering(so_far) => Phase::Gathering {
                 done: so_far.next,
                 of: mesh.patches.len() as u32,
@@ -120,9 +122,12 @@ impl Course {
 
     /// Goes on with shooting if all was shot: the options have become stricter, or the emitters are others.
     pub fn reopen(&mut self) {
-        if matches!(self.stage, Stage::Finished | Stage::Gathering(_))
-            || matches!(&self.stage, Stage::Waving(wave) if wave.is_whole())
-        {
+        let all_was_shot = match &self.stage {
+            Stage::Finished | Stage::Gathering(_) | Stage::Settling(_) => true,
+            Stage::Waving(wave) => wave.is_whole(),
+            Stage::Shooting | Stage::Refining(_) => false,
+        };
+        if all_was_shot {
             self.stage = Stage::Shooting;
         }
         self.meshing_ended = None;
@@ -133,7 +138,7 @@ impl Course {
         let (patches, elements) = (mesh.patches.len() as u32, mesh.elements.len() as u32);
         let fits = match &self.stage {
             Stage::Shooting | Stage::Finished => true,
-            Stage::Refining(shot) => {
+            Stage::Refining(shot) | Stage::Settling(shot) => {
                 let mut levels = 1..=DEEPEST;
                 let fits = match shot.shooter {
                     ALL => shot.cells.len() == tile_count(mesh),

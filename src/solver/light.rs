@@ -85,6 +85,11 @@ impl Light {
         self.exitance_unshot.iter().any(unshot)
     }
 
+    /// Marks everything of one sign as shot.
+    pub(super) fn take_all(&mut self, mesh: &Mesh, sign: Sign) {
+        (0..mesh.patches.len()).for_each(|patch| self.take(mesh, patch, sign));
+    }
+
     /// Marks everything of one sign of a patch as shot.
     pub fn take(&mut self, mesh: &Mesh, patch: usize, sign: Sign) {
         let take = |unshot: &mut Spectrum| *unshot -= sign.part(*unshot) * sign.factor();

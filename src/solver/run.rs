@@ -154,6 +154,7 @@ impl<'a> Solver<'a> {
                 }
                 Stage::Waving(wave) => self.wave(wave),
                 Stage::Refining(shot) => self.refine(shot),
+                Stage::Settling(shot) => self.settle(shot),
                 Stage::Gathering(so_far) => self.gather(so_far),
                 Stage::Finished => {
                     self.course.stage = Stage::Finished;

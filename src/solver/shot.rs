@@ -58,26 +58,37 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// One pass of refinement.
+    /// One pass of refinement for what a shot gave.
     pub(super) fn refine(&mut self, mut shot: Shot) {
         let shooter = match shot.made.take() {
             Some(made) => made,
             None => self.made(&shot),
         };
+        let sampler = self.sampler();
+        self.pass(&mut shot, &sampler, &shooter);
+        let is_done = shot.candidates.is_empty();
+        shot.made = Some(shooter);
+        if is_done {
+            self.course.meshing_shots += 1;
+            self.end_shot(shot);
+        } else {
+            self.course.stage = Stage::Refining(shot);
+        }
+    }
+
+    /// Tests the candidates and splits those that fail; what that makes are the next ones. At a limit there are none.
+    pub(super) fn pass(&mut self, shot: &mut Shot, sampler: &Sampler, shooter: &Shooter) {
         if let Some(end) = self.meshing_end() {
             self.course.meshing_ended = Some(end);
             shot.candidates.clear();
         }
         if shot.candidates.is_empty() {
-            self.course.meshing_shots += 1;
-            shot.made = Some(shooter);
-            return self.end_shot(shot);
+            return;
         }
-        let sampler = self.sampler();
         let mut refinement = Refinement {
             beam: Beam {
-                sampler: &sampler,
-                shooter: &shooter,
+                sampler,
+                shooter,
                 sign: shot.sign,
             },
             room: self.room(),
@@ -92,8 +103,6 @@ impl<'a> Solver<'a> {
         shot.candidates = refinement.pass(&shot.candidates);
         self.course.rays += refinement.rays;
         self.mesh.integrate();
-        shot.made = Some(shooter);
-        self.course.stage = Stage::Refining(shot);
     }
 
     /// What shoots, made anew from what is kept of it.

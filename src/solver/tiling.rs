@@ -7,12 +7,12 @@ use super::shoot::Shooter;
 use super::source::{Quad, cells_at, cells_on};
 use crate::form_factor::{Clusters, DEEPEST, Tile};
 use crate::mesh::{Mesh, Patch};
-use crate::radiometry::Spectrum;
+use crate::radiometry::{Power, Spectrum};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Tiles are no longer than this fraction of the scene's extent, unless their patch would need more than [`DEEPEST`] levels.
-const SIZE: f64 = 1.0 / 64.0;
+pub(super) const SIZE: f64 = 1.0 / 64.0;
 
 /// The tiles of a mesh. They depend on its patches alone, not on how these are meshed.
 #[derive(Debug, Clone)]
@@ -46,6 +46,12 @@ impl Tiling {
             tiling: self,
             settled: true,
         }
+    }
+
+    /// What they send together, W times the square of the frame's scale.
+    pub fn power(&self) -> Power {
+        let power = |(tile, radiosity): (&Tile, Spectrum)| (radiosity * tile.area()).as_dvec3();
+        self.clusters.tiles().map(power).sum()
     }
 
     /// The tiles with what they send, to draw points from.

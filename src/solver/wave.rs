@@ -1,9 +1,10 @@
 //! A scene of many patches: all that is unshot is shot at once, as clusters; a wave of light after the other.
 //!
 //! Direct light arrives at the vertices as a shot does, slice by slice, and refines the mesh as a shot does; so does the gathering at the
-//! end, without refining. What either takes is a cut through the tree of clusters for each vertex, not a visit to each vertex for each
+//! end. What either takes is a cut through the tree of clusters for each vertex, not a visit to each vertex for each
 //! patch. The waves in between arrive at neighbourhoods (`bounce.rs`).
 
+use super::audit::Span;
 use super::course::{ALL, Shot, Stage};
 use super::escape::Lost;
 use super::light::{Light, Sign};
@@ -176,35 +177,19 @@ impl<'a> Solver<'a> {
         }
         match wave.kind {
             Kind::Unshot(sign) => self.arrive_unshot(wave, sign),
-            Kind::Whole(ambient) => self.arrive_whole(&wave, ambient),
+            Kind::Whole(ambient) => self.arrive_whole(wave, ambient),
         }
     }
 
     fn arrive_unshot(&mut self, wave: Wave, sign: Sign) {
-        for patch in 0..self.mesh.patches.len() {
-            self.light.take(&self.mesh, patch, sign);
-        }
+        self.light.take_all(&self.mesh, sign);
         for (vertex, gather) in wave.arrived.iter().enumerate() {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
         }
         let meshes =
             wave.power >= self.options.meshing_power && self.course.meshing_ended.is_none();
-        let may_split = |e: &u32| self.mesh.may_split(*e);
-        let shot = Shot {
-            shooter: ALL,
-            sign,
-            power: wave.power,
-            cells: wave.cells,
-            candidates: if meshes {
-                self.mesh.leaves().filter(may_split).collect()
-            } else {
-                Vec::new()
-            },
-            feelers: Vec::new(),
-            arrived: wave.arrived,
-            made: self.radiated.take(),
-        };
+        let shot = self.arrived(wave, sign, meshes);
         if meshes {
             self.course.stage = Stage::Refining(shot);
         } else {
@@ -212,25 +197,65 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn arrive_whole(&mut self, wave: &Wave, ambient: Spectrum) {
+    fn arrive_whole(&mut self, wave: Wave, ambient: Spectrum) {
         let whole: Light = self.whole(ambient);
         let Some(all) = self.radiated.take() else {
             return;
         };
         let lost = self.escape_of_all(&all, wave.power);
-        let sent: f64 = (0..self.mesh.patches.len())
-            .map(|p| {
-                whole
-                    .unshot_power(&self.mesh, p, Sign::Positive)
-                    .element_sum()
-            })
-            .sum();
-        let irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
-        let weighted = irradiance.iter().zip(&self.mesh.weights);
-        let received: Power = weighted.map(|(e, w)| e.as_dvec3() * *w).sum();
-        let sums = vec![((received + lost.all).element_sum() / sent, sent)];
-        self.keep_tiling(all);
-        self.take_over(irradiance, &whole, lost, sums);
+        self.radiated = Some(all);
+        let irradiance = wave.arrived.iter().map(|g| g.irradiance).collect();
+        self.take_over(irradiance, &whole, lost, Vec::new());
+        let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
+        self.course.stage = Stage::Settling(shot);
+    }
+
+    /// A wave that has arrived at the vertices that there are; if it `meshes`, all elements are to be tested.
+    fn arrived(&mut self, wave: Wave, sign: Sign, meshes: bool) -> Shot {
+        let candidates = self
+            .mesh
+            .leaves()
+            .filter(|e| meshes && self.mesh.may_split(*e));
+        Shot {
+            shooter: ALL,
+            sign,
+            power: wave.power,
+            cells: wave.cells,
+            candidates: candidates.collect(),
+            feelers: Vec::new(),
+            arrived: wave.arrived,
+            made: self.radiated.take(),
+        }
+    }
+
+    /// One pass of refinement for what was gathered of all light. The solve ends when there is nothing to split.
+    pub(super) fn settle(&mut self, mut shot: Shot) {
+        let all = match shot.made.take() {
+            Some(all) => all,
+            None => self.radiating(&shot.cells, true),
+        };
+        let sampler = self.sampler();
+        self.pass(&mut shot, &sampler, &all);
+        if shot.candidates.is_empty() {
+            self.course.sent_sum = self.sent_sum(&shot.arrived, &all);
+            self.keep_tiling(all);
+            self.course.stage = Stage::Finished;
+        } else {
+            shot.made = Some(all);
+            self.course.stage = Stage::Settling(shot);
+        }
+    }
+
+    /// What arrived and what escaped over what was sent.
+    fn sent_sum(&self, arrived: &[Gather], all: &Shooter) -> Option<Span> {
+        let Shooter::All { tiling, .. } = all else {
+            return None;
+        };
+        let weighted = arrived.iter().zip(&self.mesh.weights);
+        let received: Power = weighted.map(|(g, w)| g.irradiance.as_dvec3() * *w).sum();
+        let sent = tiling.power().element_sum();
+        let arrived = (received + self.course.lost.all).element_sum();
+        Span::of(std::iter::once((arrived / sent, sent)))
     }
 
     /// What escapes of a fraction `power` of what is emitted.

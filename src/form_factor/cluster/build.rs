@@ -5,9 +5,6 @@ use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
 
-/// Tiles of a leaf.
-const BUCKET: usize = 4;
-
 /// Nodes deeper than this are split into equal numbers, so that no arrangement of tiles makes a deep tree.
 const DEEPEST_IN_SPACE: u32 = 40;
 
@@ -60,7 +57,7 @@ impl Builder<'_> {
         let number = self.nodes.len();
         let node = self.node(group, first);
         self.nodes.push(node);
-        if group.len() > BUCKET {
+        if group.len() > 1 {
             let middle = self.halve(group, depth);
             let (left, right) = group.split_at_mut(middle);
             self.add(left, first, depth + 1);

@@ -1,6 +1,6 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Clusters, Node, Sends};
+use super::{Aim, Clusters, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
@@ -20,7 +20,9 @@ impl Clusters {
         for number in (0..self.nodes.len()).rev() {
             let node = self.nodes[number];
             let (sends, peak) = if node.second == 0 {
-                self.bucket(&node, number as u32)
+                let tile = self.order[node.first as usize];
+                let peak = self.radiosity[tile as usize].max_element();
+                (self.sent_by(tile), peak)
             } else {
                 let [a, b] = [number + 1, node.second as usize];
                 let draw = jitter(number as u32, seed)[0] as f32;
@@ -33,10 +35,14 @@ impl Clusters {
         }
     }
 
+    /// Mean radiosity of the channels.
+    fn mean(&self, tile: u32) -> f32 {
+        self.radiosity[tile as usize].element_sum() / 3.0
+    }
+
     /// Area × mean radiosity of a tile.
     fn weight(&self, tile: u32) -> f32 {
-        let mean = self.radiosity[tile as usize].element_sum() / 3.0;
-        self.tiles[tile as usize].area() * mean
+        self.tiles[tile as usize].area() * self.mean(tile)
     }
 
     fn aim(&self, tile: u32, at: [f64; 2]) -> Aim {
@@ -62,20 +68,6 @@ impl Clusters {
         self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
     }
 
-    /// What a leaf sends, and its peak.
-    fn bucket(&self, node: &Node, number: u32) -> (Sends, f32) {
-        let tiles = &self.order[node.first as usize..node.end as usize];
-        let draw = |place: usize| jitter(number.wrapping_add(place as u32), self.seed)[1] as f32;
-        let all = tiles.iter().enumerate();
-        let sends = all.fold(Sends::default(), |sum, (place, tile)| {
-            joined(sum, self.sent_by(*tile), draw(place))
-        });
-        let peaks = tiles
-            .iter()
-            .map(|t| self.radiosity[*t as usize].max_element());
-        (sends, peaks.fold(0.0, f32::max))
-    }
-
     fn sent_by(&self, number: u32) -> Sends {
         let tile = &self.tiles[number as usize];
         let weight = self.weight(number);
@@ -85,7 +77,7 @@ impl Clusters {
         let inside = corners
             .iter()
             .map(|corner| products(*corner - centre, 1.0 / 12.0));
-        let mean = self.radiosity[number as usize].element_sum() / 3.0;
+        let mean = self.mean(number);
         Sends {
             flux: tile.normal * weight,
             weight,

@@ -6,15 +6,17 @@
 //! give together, `P·(-d) cosθ_r / π r²` with a term of second order for its size (`view.rs`), of which Eq. (1) is the case of a
 //! disk on the axis.
 //!
-//! A point gathers from the coarsest clusters that its thresholds allow, and from single tiles with the five-times rule where they
-//! do not (`gather.rs`); one ray goes to each.
+//! A point gathers from the coarsest clusters that its thresholds allow, and by Eq. (2) from single tiles where they do not
+//! (`walk.rs`); one ray goes to what is large enough for it (`found.rs`).
 
 mod build;
+mod found;
 mod gather;
 mod light;
 #[cfg(test)]
 mod tests;
 mod view;
+mod walk;
 
 pub use gather::ClusterScratch;
 
@@ -91,7 +93,7 @@ pub struct Clusters {
     /// What each of them sends.
     sends: Vec<Sends>,
     roots: Vec<u32>,
-    /// The tiles in the order of the leaves.
+    /// The tiles in the order of the leaves, one each.
     order: Vec<u32>,
     /// Σ area × mean radiosity of the tiles before each in that order, and of all.
     sums: Vec<f64>,

@@ -1,6 +1,7 @@
-//! A cluster as a point sees it.
+//! Clusters as points see them: several points side by side, for the compiler to vectorise.
 
 use super::{Aim, Node, Sends};
+use crate::form_factor::hybrid::Receiver;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
 use std::f32::consts::PI;
@@ -11,61 +12,133 @@ const MOST_GAIN: f32 = 0.5;
 /// What is drawn of a cluster for all of it counts no more than this many times what can arrive.
 const MOST_DRAWN: f32 = 8.0;
 
-/// What a point sees of a cluster, occlusion left aside.
-pub(super) struct View {
-    /// All of it faces the point and is above its horizon.
-    pub whole: bool,
+/// Points that walk the tree side by side.
+pub(super) const LANES: usize = 16;
+
+/// One number of each point.
+pub(super) type Row = [f32; LANES];
+
+/// Which of the points: a bit for each.
+pub(super) type Mask = u32;
+
+/// The points of a mask.
+#[inline(always)]
+pub(super) fn lanes(mut mask: Mask) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let lane = mask.trailing_zeros();
+            mask &= mask - 1;
+            lane as usize
+        })
+    })
+}
+
+/// The points for which `holds`.
+#[inline(always)]
+pub(super) fn mask(holds: impl Fn(usize) -> bool) -> Mask {
+    (0..LANES).fold(0, |mask, lane| {
+        mask | if holds(lane) { 1 << lane } else { 0 }
+    })
+}
+
+/// Points with their normals, component by component.
+pub(super) struct Rows {
+    point: [Row; 3],
+    normal: [Row; 3],
+}
+
+impl Rows {
+    /// No more than [`LANES`] receivers.
+    pub fn new(receivers: &[(Receiver, u32)]) -> Self {
+        let mut rows = Self {
+            point: [[0.0; LANES]; 3],
+            normal: [[0.0; LANES]; 3],
+        };
+        for (lane, (receiver, _)) in receivers.iter().enumerate() {
+            for axis in 0..3 {
+                rows.point[axis][lane] = receiver.point[axis] as f32;
+                rows.normal[axis][lane] = receiver.normal[axis] as f32;
+            }
+        }
+        rows
+    }
+
+    #[inline(always)]
+    fn to(&self, target: Vec3, lane: usize) -> Vec3 {
+        target - Vec3::from([0, 1, 2].map(|axis| self.point[axis][lane]))
+    }
+
+    #[inline(always)]
+    fn normal(&self, lane: usize) -> Vec3 {
+        Vec3::from([0, 1, 2].map(|axis| self.normal[axis][lane]))
+    }
+}
+
+/// What points see of a cluster, occlusion left aside.
+pub(super) struct Views {
+    /// Those that see any of it.
+    pub seen: Mask,
+    /// Those that all of it faces, and who have all of it above their horizon.
+    pub whole: Mask,
     /// No more than this can arrive, strongest channel.
-    pub bound: f32,
+    pub bound: Row,
     /// Radius over distance.
-    pub size: f32,
+    pub size: Row,
 }
 
 impl Node {
-    /// What a point sees of it; `None` if nothing.
-    #[inline]
-    pub(super) fn view(&self, point: Vec3, normal: Vec3, hair: f32) -> Option<View> {
-        let to = self.centre - point;
-        let height = normal.dot(to);
-        if self.strength <= 0.0 || height <= -self.radius {
-            return None;
-        }
-        let square = to.length_squared();
-        let distance = square.sqrt();
-        // How far in front of the planes of its tiles the point is, at most and at least.
-        let along = -self.axis.dot(to);
-        let across = (square - along * along).max(0.0).sqrt();
+    /// What points see of it.
+    #[inline(always)]
+    pub(super) fn views(&self, of: &Rows, hair: f32) -> Views {
+        let mut views = Views {
+            seen: 0,
+            whole: 0,
+            bound: [0.0; LANES],
+            size: [0.0; LANES],
+        };
+        let (mut height, mut most, mut least) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (cosine, sine) = self.cone;
         let slack = self.thickness + self.radius * sine;
-        let most = if along >= distance * cosine {
-            distance
-        } else {
-            along * cosine + across * sine
-        };
-        if most + slack <= hair {
-            return None;
-        }
-        let least = along * cosine - across * sine - slack;
-        // Right beside the centre there is no direction; what is that near is opened.
-        let away = distance.max(0.01 * self.radius).recip();
-        let gap = (distance - self.radius).max(0.0);
-        let nearest = self.strength * ((height + self.radius) * away).min(1.0) / (PI * gap * gap);
-        let size = self.radius * away;
-        Some(View {
-            whole: least >= 0.0 && height >= self.radius,
+        for lane in 0..LANES {
+            let to = of.to(self.centre, lane);
+            height[lane] = of.normal(lane).dot(to);
+            let square = to.length_squared();
+            let distance = square.sqrt();
+            // How far in front of the planes of its tiles the point is, at most and at least.
+            let along = -self.axis.dot(to);
+            let across = (square - along * along).max(0.0).sqrt();
+            most[lane] = if along >= distance * cosine {
+                distance
+            } else {
+                along * cosine + across * sine
+            };
+            least[lane] = along * cosine - across * sine - slack;
+            // Right beside the centre there is no direction; what is that near is opened.
+            let away = 1.0 / distance.max(0.01 * self.radius);
+            let gap = (distance - self.radius).max(0.0);
+            // The largest cosines there and here.
+            let facing = ((most[lane] + slack) / gap).min(1.0);
+            let steepest = ((height[lane] + self.radius) * away).min(1.0);
+            let nearest = self.strength * facing * steepest / (PI * gap * gap);
+            let size = self.radius * away;
             // What is inside a sphere fills no more of a cosine-weighted hemisphere than the sphere does.
-            bound: nearest.min(self.peak * (size * size).min(1.0)),
-            size,
-        })
+            let fill = (size * size).min(1.0) * (2.0 * steepest).min(1.0);
+            views.bound[lane] = nearest.min(self.peak * fill);
+            views.size[lane] = size;
+        }
+        views.seen = mask(|lane| (height[lane] > -self.radius) & (most[lane] + slack > hair));
+        views.whole = mask(|lane| (least[lane] >= 0.0) & (height[lane] >= self.radius));
+        views
     }
 }
 
 impl Sends {
     /// What arrives of a cluster of which a point does not see the whole, were it all at `aim`, a point that was drawn of it: right
     /// in the mean over all draws. `bound` is that of its view.
-    pub(super) fn drawn(&self, aim: &Aim, point: Vec3, normal: Vec3, bound: f32) -> Spectrum {
-        let to = aim.target - point;
-        let (a, b) = (-aim.normal.dot(to), normal.dot(to));
+    #[inline(always)]
+    pub(super) fn drawn(&self, aim: &Aim, of: &Rows, lane: usize, bound: f32) -> Spectrum {
+        let to = of.to(aim.target, lane);
+        let (a, b) = (-aim.normal.dot(to), of.normal(lane).dot(to));
         if a <= 0.0 || b <= 0.0 {
             return Spectrum::ZERO;
         }
@@ -74,25 +147,29 @@ impl Sends {
         self.colour * (self.weight * a * b / (PI * square * square)).min(most)
     }
 
-    /// What arrives at a point of a cluster that is whole above its horizon and faces it: the kernel (P·x)(n·x)/π r⁴ at the centre,
+    /// What arrives, mean of the channels, at points that see the whole of a cluster: the kernel (P·x)(n·x)/π r⁴ at the centre,
     /// and its term of second order for the covariance M of the sources,
     /// ½ M:∇∇ = (PMn - 4 (b PMx + a nMx)/r² + ab (12 xMx/r² - 2 tr M)/r²) / π r⁴ with a = P·x and b = n·x. For a disk on the axis it
     /// begins like Eq. (1).
-    #[inline]
-    pub(super) fn arriving(&self, point: Vec3, normal: Vec3, radius: f32) -> Spectrum {
-        let to = self.centre - point;
-        // Nearer than this it is opened, whatever this says.
-        let square = to.length_squared().max(radius * radius);
-        let (a, b) = (-self.flux.dot(to), normal.dot(to));
+    #[inline(always)]
+    pub(super) fn arriving(&self, of: &Rows, radius: f32) -> Row {
         let [diagonal, mixed] = self.spread;
         let times = |v: Vec3| diagonal * v + mixed.zxy() * v.yzx() + mixed.yzx() * v.zxy();
-        let (of_normal, of_to) = (times(normal), times(to));
         let trace = diagonal.element_sum();
-        let change = -self.flux.dot(of_normal)
-            - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) / square
-            + a * b * (12.0 * to.dot(of_to) / square - 2.0 * trace) / square;
-        let plain = (a * b).max(0.0);
-        let change = change.clamp(-MOST_GAIN * plain, MOST_GAIN * plain);
-        self.colour * ((plain + change) / (PI * square * square))
+        let mut arriving = [0.0; LANES];
+        for (lane, arriving) in arriving.iter_mut().enumerate() {
+            let (to, normal) = (of.to(self.centre, lane), of.normal(lane));
+            // Nearer than this it is opened, whatever this says.
+            let square = to.length_squared().max(radius * radius);
+            let (a, b) = (-self.flux.dot(to), normal.dot(to));
+            let (of_normal, of_to) = (times(normal), times(to));
+            let change = -self.flux.dot(of_normal)
+                - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) / square
+                + a * b * (12.0 * to.dot(of_to) / square - 2.0 * trace) / square;
+            let plain = (a * b).max(0.0);
+            let change = change.max(-MOST_GAIN * plain).min(MOST_GAIN * plain);
+            *arriving = (plain + change) / (PI * square * square);
+        }
+        arriving
     }
 }

@@ -3,7 +3,7 @@
 //! `tree` turns obvhs' binary tree into pairs of siblings, `probe` is the watertight test of a triangle
 //! seen from one origin, `fan` takes all segments of a fan through the tree together, in `lanes` of
 //! several numbers; `nearest` follows one ray to its first hit. The traversal of fans is written once and
-//! compiled for several instruction sets (`x86`), of which `isa` chooses one at run time.
+//! compiled for several instruction sets (`x86`, by `isa`), of which one is chosen at run time.
 
 mod fan;
 mod isa;
@@ -15,7 +15,7 @@ mod tree;
 mod x86;
 
 use super::{EngineInfo, Fans, Hit, MAX_FAN, Ray, Triangles, Visibility, VisibilityError};
-use isa::Isa;
+use crate::simd::Isa;
 use tree::Tree;
 
 /// Version of obvhs in `Cargo.toml`; the crate does not tell it.
@@ -35,10 +35,9 @@ impl Obvhs {
     /// Builds the tree, on one thread: its shape then depends on nothing but the triangles.
     pub fn new(triangles: &Triangles) -> Result<Self, VisibilityError> {
         triangles.validate()?;
-        let isa = *Isa::available().last().expect("the portable one");
         Ok(Self {
             tree: Tree::new(triangles),
-            isa,
+            isa: Isa::widest(),
         })
     }
 }
@@ -63,7 +62,7 @@ impl Visibility for Obvhs {
 
     fn occluded(&self, fans: &Fans, masks: &mut Vec<u64>) {
         masks.clear();
-        self.isa.occluded(&self.tree, fans, masks);
+        isa::occluded(self.isa, &self.tree, fans, masks);
     }
 
     fn nearest(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {

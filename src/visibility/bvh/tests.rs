@@ -52,7 +52,7 @@ fn all_instruction_sets_give_the_same_bits() {
     let (tree, fans) = (Tree::new(&triangles), fans(&triangles, 2000));
     let ask = |isa: Isa| {
         let mut masks = Vec::new();
-        isa.occluded(&tree, &fans, &mut masks);
+        isa::occluded(isa, &tree, &fans, &mut masks);
         masks
     };
     let expected = ask(Isa::Portable);

@@ -1,0 +1,162 @@
+//! What a point has found on its way through the tree.
+
+use crate::form_factor::Gather;
+use crate::geometry::jitter;
+use crate::radiometry::Spectrum;
+use crate::visibility::MAX_FAN;
+use glam::Vec3;
+
+/// What is pooled for one ray gives at least this part of ε_fe.
+const POOLED: f32 = 0.25;
+
+/// What a draw settles is bounded by this many times ε_fe: of such a bound little arrives.
+const LOOSE: f32 = 0.5;
+
+/// What a point gets from a cluster or tile, if all of its rays arrive.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    contribution: Spectrum,
+    rays: u32,
+}
+
+/// Parts that are too small for a ray each: one ray, to one of them drawn in proportion to what they give, answers for all.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pool {
+    contribution: Spectrum,
+    measure: f32,
+    target: Vec3,
+    draws: u32,
+}
+
+/// Clusters that a point may see a part of, to be settled by one draw: first which of them, in proportion to what can arrive of it, and
+/// then which place of it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Loose {
+    /// Σ of the bounds of all.
+    bounds: f32,
+    draws: u32,
+    drawn: Drawn,
+}
+
+/// A cluster that was drawn of several.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Drawn {
+    pub cluster: u32,
+    /// No more than this can arrive of it.
+    pub bound: f32,
+    /// So many times what it gives stands for all.
+    pub stands_for: f32,
+}
+
+/// The parts of one point and the targets of their rays.
+#[derive(Default)]
+pub(super) struct Found {
+    parts: Vec<Part>,
+    /// Of the rays of all parts, in their order.
+    targets: Vec<Vec3>,
+    pool: Pool,
+    loose: Loose,
+}
+
+impl Found {
+    pub fn clear(&mut self) {
+        self.parts.clear();
+        self.targets.clear();
+        self.pool = Pool::default();
+        self.loose = Loose::default();
+    }
+
+    /// How many parts there are.
+    pub fn len(&self) -> usize {
+        self.parts.len()
+    }
+
+    pub fn targets(&self) -> &[Vec3] {
+        &self.targets
+    }
+
+    /// Adds a part with a ray to each target.
+    pub fn push(&mut self, contribution: Spectrum, targets: impl Iterator<Item = Vec3>) {
+        let before = self.targets.len();
+        self.targets.extend(targets);
+        self.parts.push(Part {
+            contribution,
+            rays: (self.targets.len() - before) as u32,
+        });
+    }
+
+    /// Adds what one ray is enough for, by itself or with others; `key` draws the one that the ray goes to.
+    pub fn pool(&mut self, contribution: Spectrum, target: Vec3, estimate: f32, key: u32) {
+        let measure = contribution.max_element();
+        if measure <= 0.0 {
+            return;
+        }
+        let pool = &mut self.pool;
+        pool.contribution += contribution;
+        pool.measure += measure;
+        pool.draws += 1;
+        if pool.draws == 1 || jitter(key, !pool.draws)[0] as f32 * pool.measure < measure {
+            pool.target = target;
+        }
+        if pool.measure >= POOLED * estimate {
+            self.empty_pool();
+        }
+    }
+
+    /// The ray for what is left in the pool.
+    pub fn empty_pool(&mut self) {
+        let pool = std::mem::take(&mut self.pool);
+        if pool.draws > 0 {
+            self.push(pool.contribution, std::iter::once(pool.target));
+        }
+    }
+
+    /// Adds a cluster of which no more than `bound` can arrive; gives one to be drawn from when there are enough.
+    pub fn loosen(&mut self, cluster: u32, bound: f32, estimate: f32, key: u32) -> Option<Drawn> {
+        let loose = &mut self.loose;
+        loose.bounds += bound;
+        loose.draws += 1;
+        if loose.draws == 1 || jitter(key, cluster)[0] as f32 * loose.bounds < bound {
+            loose.drawn.cluster = cluster;
+            loose.drawn.bound = bound;
+        }
+        (loose.bounds >= LOOSE * estimate)
+            .then(|| self.empty_loose())
+            .flatten()
+    }
+
+    /// One to be drawn from of what is left.
+    pub fn empty_loose(&mut self) -> Option<Drawn> {
+        let Loose {
+            bounds,
+            draws,
+            drawn,
+        } = std::mem::take(&mut self.loose);
+        let stands_for = bounds / drawn.bound;
+        (draws > 0 && drawn.bound > 0.0).then_some(Drawn {
+            stands_for,
+            ..drawn
+        })
+    }
+
+    /// Adds up the parts; `masks` are those of the fans of its targets.
+    pub fn sum(&self, masks: &mut impl Iterator<Item = u64>) -> Gather {
+        let mut gather = Gather::default();
+        let (mut mask, mut bit) = (0, MAX_FAN);
+        for part in &self.parts {
+            let mut seen = 0;
+            for _ in 0..part.rays {
+                if bit == MAX_FAN {
+                    (mask, bit) = (masks.next().expect("a mask for each fan"), 0);
+                }
+                seen += u32::from(mask >> bit & 1 == 0);
+                bit += 1;
+            }
+            gather.unoccluded += part.contribution;
+            gather.irradiance += part.contribution * (seen as f32 / part.rays as f32);
+        }
+        let all = gather.unoccluded.element_sum();
+        gather.visibility = (all > 0.0).then(|| gather.irradiance.element_sum() / all);
+        gather
+    }
+}

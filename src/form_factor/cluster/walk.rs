@@ -1,0 +1,327 @@
+//! The way through the tree: a few points side by side, each down to the coarsest clusters that its thresholds allow.
+
+use super::found::{Drawn, Found};
+use super::view::{LANES, Mask, Row, Rows, Views, lanes, mask};
+use super::{Clusters, Node, Sends};
+use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
+use crate::form_factor::source::{Cell, SourceShape};
+use crate::form_factor::{Formula, Sampler};
+use crate::geometry::{jitter, lift};
+use crate::radiometry::Spectrum;
+use crate::simd::Kernel;
+use glam::{DVec3, Vec3};
+
+/// Parts that one point may gather before its thresholds are doubled; half as many more double them again.
+const MOST: usize = 2048;
+
+/// Light that is known to be there counts at least this part of the scene's reference: where it is dark, thresholds need not follow
+/// the light to nothing.
+const LEAST_KNOWN: f32 = 0.1;
+
+/// A cluster that looks larger than this, radius over distance, is not taken whole for the first guess of the light at a point.
+const GUESS: f32 = 1.0;
+
+/// A cluster that looks larger than this is opened, unless no more than ε_fd can arrive.
+const LARGE: f32 = 0.5;
+
+/// A cluster of which a point may see a part is taken if no more than this part of ε_fe can arrive: where draws differ and even out …
+const PART_DRAWN: f64 = 0.5;
+
+/// … and where neighbours aim at the same place.
+const PART_SETTLED: f64 = 0.25;
+
+/// Rays along each side of a tile that gives a point much.
+const MOST_RAYS: u32 = 4;
+
+/// A few points on their way.
+pub(super) struct Walk<'a> {
+    pub sampler: &'a Sampler<'a>,
+    pub clusters: &'a Clusters,
+    /// No more than [`LANES`].
+    pub receivers: &'a [(Receiver, u32)],
+    pub settled: bool,
+    /// Clusters that are yet to be looked at, and by whom.
+    pub pending: &'a mut Vec<(u32, Mask)>,
+    /// One for each receiver.
+    pub points: &'a mut [Found],
+}
+
+/// The thresholds of each point.
+struct Limits {
+    difference: Row,
+    estimate: Row,
+    /// Bound of a cluster that is taken in part.
+    part: Row,
+    /// More parts than this double them.
+    most: [usize; LANES],
+}
+
+/// What is done with a cluster: by all that see any of it, those who take all of it at once, those who take a part, those who open it.
+struct Choice {
+    whole: Mask,
+    part: Mask,
+    opened: Mask,
+    /// What arrives of the whole, mean of the channels.
+    arriving: Row,
+}
+
+impl Kernel for Walk<'_> {
+    type Output = ();
+
+    /// Finds the parts of all points.
+    #[inline(always)]
+    fn run(mut self) {
+        let rows = Rows::new(self.receivers);
+        let all = Mask::MAX >> (Mask::BITS - self.receivers.len() as u32);
+        let mut limits = self.limits(&rows, all);
+        self.points.iter_mut().for_each(Found::clear);
+        self.begin(all);
+        while let Some((number, asking)) = self.pending.pop() {
+            let node = &self.clusters.nodes[number as usize];
+            let sends = &self.clusters.sends[number as usize];
+            let Some(views) = self.views(node, &rows, asking) else {
+                continue;
+            };
+            let choice = limits.choose(node, sends, &rows, &views);
+            for lane in lanes(choice.whole) {
+                let contribution = sends.colour * choice.arriving[lane];
+                self.pool(lane, contribution, sends.aim.target, &limits);
+            }
+            for lane in lanes(choice.part) {
+                self.take_part(lane, number, views.bound[lane], (&rows, &limits));
+            }
+            self.open(number, choice.opened, &mut limits);
+        }
+        for lane in lanes(all) {
+            if let Some(drawn) = self.points[lane].empty_loose() {
+                self.draw(lane, drawn, &rows);
+            }
+            self.points[lane].empty_pool();
+        }
+    }
+}
+
+impl Limits {
+    #[inline(always)]
+    fn choose(&self, node: &Node, sends: &Sends, rows: &Rows, views: &Views) -> Choice {
+        let (difference, estimate) = (&self.difference, &self.estimate);
+        let Views {
+            seen,
+            whole,
+            bound,
+            size,
+        } = views;
+        let slight = mask(|l| bound[l] <= difference[l]);
+        let small = mask(|l| size[l] < LARGE);
+        let part = mask(|l| bound[l] <= self.part[l]) & seen & !whole;
+        let mut whole = (slight | small) & seen & whole;
+        let mut arriving = [0.0; LANES];
+        if whole != 0 {
+            arriving = sends.arriving(rows, node.radius);
+            let strongest = sends.colour.max_element();
+            let is_fine = |l: usize| {
+                let measure = arriving[l] * strongest;
+                let left = 0.5 * size[l] * size[l] * measure;
+                (measure <= estimate[l]) & (left <= difference[l])
+            };
+            whole &= slight | mask(is_fine);
+        }
+        Choice {
+            whole,
+            part,
+            opened: seen & !whole & !part,
+            arriving,
+        }
+    }
+}
+
+impl Walk<'_> {
+    #[inline(always)]
+    fn begin(&mut self, all: Mask) {
+        self.pending.clear();
+        let roots = self.clusters.roots.iter().rev();
+        self.pending.extend(roots.map(|root| (*root, all)));
+    }
+
+    /// What those who ask see of a cluster, if any sees any of it.
+    #[inline(always)]
+    fn views(&self, node: &Node, rows: &Rows, asking: Mask) -> Option<Views> {
+        if node.strength <= 0.0 {
+            return None;
+        }
+        // Points no higher than a hair above a cluster lie in its plane, up to rounding.
+        let hair = 0.1 * self.clusters.offset;
+        let mut views = node.views(rows, hair);
+        views.seen &= asking;
+        (views.seen != 0).then_some(views)
+    }
+
+    #[inline(always)]
+    fn limits(&mut self, rows: &Rows, all: Mask) -> Limits {
+        let mut known = [0.0; LANES];
+        for (known, (receiver, _)) in known.iter_mut().zip(self.receivers) {
+            *known = receiver.irradiance;
+        }
+        let unknown = all & mask(|l| known[l] <= 0.0);
+        if unknown != 0 {
+            let expected = self.expected(rows, unknown);
+            lanes(unknown).for_each(|lane| known[lane] = expected[lane].max_element());
+        }
+        let thresholds = &self.sampler.thresholds;
+        let least = LEAST_KNOWN * thresholds.scale.reference as f32;
+        let unit = known.map(|known| thresholds.scale.at(f64::from(known.max(least))));
+        let part = if self.settled {
+            PART_SETTLED
+        } else {
+            PART_DRAWN
+        };
+        Limits {
+            part: unit.map(|unit| (part * thresholds.estimate * unit) as f32),
+            difference: unit.map(|unit| (thresholds.difference * unit) as f32),
+            estimate: unit.map(|unit| (thresholds.estimate * unit) as f32),
+            most: [MOST; LANES],
+        }
+    }
+
+    /// About what points would get were nothing in between.
+    #[inline(always)]
+    fn expected(&mut self, rows: &Rows, all: Mask) -> [Spectrum; LANES] {
+        let mut sum = [Spectrum::ZERO; LANES];
+        self.begin(all);
+        while let Some((number, asking)) = self.pending.pop() {
+            let node = &self.clusters.nodes[number as usize];
+            let sends = &self.clusters.sends[number as usize];
+            let Some(views) = self.views(node, rows, asking) else {
+                continue;
+            };
+            let large = mask(|l| views.size[l] > GUESS);
+            let opened = if node.second != 0 {
+                large & views.seen
+            } else {
+                0
+            };
+            self.descend(number, opened);
+            let taken = views.seen & !opened;
+            if taken & views.whole != 0 {
+                let arriving = sends.arriving(rows, node.radius);
+                lanes(taken & views.whole).for_each(|l| sum[l] += sends.colour * arriving[l]);
+            }
+            for lane in lanes(taken & !views.whole) {
+                sum[lane] += sends.drawn(&sends.aim, rows, lane, views.bound[lane]);
+            }
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn descend(&mut self, number: u32, opened: Mask) {
+        if opened != 0 {
+            let second = self.clusters.nodes[number as usize].second;
+            self.pending
+                .extend([(second, opened), (number + 1, opened)]);
+        }
+    }
+
+    #[inline(always)]
+    fn open(&mut self, number: u32, opened: Mask, limits: &mut Limits) {
+        let node = &self.clusters.nodes[number as usize];
+        if node.second != 0 {
+            return self.descend(number, opened);
+        }
+        for lane in lanes(opened) {
+            let tile = self.clusters.order[node.first as usize];
+            self.take_tile(lane, tile, limits);
+            if self.points[lane].len() > limits.most[lane] {
+                limits.most[lane] += MOST / 2;
+                limits.difference[lane] *= 2.0;
+                limits.estimate[lane] *= 2.0;
+                limits.part[lane] *= 2.0;
+            }
+        }
+    }
+
+    fn pool(&mut self, lane: usize, contribution: Spectrum, target: Vec3, limits: &Limits) {
+        let (estimate, key) = (limits.estimate[lane], self.receivers[lane].1);
+        self.points[lane].pool(contribution, target, estimate, key);
+    }
+
+    /// Takes what may be seen of a cluster in part, were it all at a point drawn of it.
+    #[inline(always)]
+    fn take_part(
+        &mut self,
+        lane: usize,
+        number: u32,
+        bound: f32,
+        (rows, limits): (&Rows, &Limits),
+    ) {
+        if self.settled {
+            let sends = &self.clusters.sends[number as usize];
+            let contribution = sends.drawn(&sends.aim, rows, lane, bound);
+            self.pool(lane, contribution, sends.aim.target, limits);
+        } else {
+            let (estimate, key) = (limits.estimate[lane], self.receivers[lane].1);
+            let drawn = self.points[lane].loosen(number, bound, estimate, key);
+            drawn
+                .into_iter()
+                .for_each(|drawn| self.draw(lane, drawn, rows));
+        }
+    }
+
+    fn draw(&mut self, lane: usize, drawn: Drawn, rows: &Rows) {
+        let sends = &self.clusters.sends[drawn.cluster as usize];
+        let aim = self.clusters.draw(drawn.cluster, self.receivers[lane].1);
+        let contribution = sends.drawn(&aim, rows, lane, drawn.bound) * drawn.stands_for;
+        if contribution.max_element() > 0.0 {
+            self.points[lane].push(contribution, std::iter::once(aim.target));
+        }
+    }
+
+    /// Clusters take Eq. (1) where the five-times rule would; a single tile is near.
+    fn formula(&self) -> Formula {
+        match self.sampler.formula {
+            Formula::Disk => Formula::Disk,
+            Formula::Hybrid(_) | Formula::Polygon => Formula::Polygon,
+        }
+    }
+
+    fn take_tile(&mut self, lane: usize, number: u32, limits: &Limits) {
+        let (receiver, key) = self.receivers[lane];
+        let radiosity = self.clusters.radiosity[number as usize];
+        if radiosity.max_element() <= 0.0 {
+            return;
+        }
+        let tile = &self.clusters.tiles[number as usize];
+        let shape = if tile.corner_count() == 3 {
+            SourceShape::Triangle
+        } else {
+            SourceShape::Quad
+        };
+        let cell = Cell::new(tile.corners.map(Vec3::as_dvec3), shape);
+        let normal = tile.normal.as_dvec3();
+        let sight = self.formula().sight(receiver, &cell, normal);
+        let contribution = radiosity * sight.form_factor as f32;
+        let measure = contribution.max_element();
+        if measure <= 0.0 {
+            return;
+        }
+        let side = (measure / limits.estimate[lane]).sqrt().ceil();
+        let side = (side as u32).clamp(1, MOST_RAYS);
+        let cut = sight.cut.then(|| above_horizon(receiver, &cell));
+        let extent = self.sampler.extent;
+        let aim = |ray: u32| {
+            let [s, t] = jitter(key, number ^ ray.wrapping_mul(0x9e37_79b9));
+            let place = |i: u32, x: f64| (f64::from(i) + 0.05 + 0.9 * x) / f64::from(side);
+            let (s, t) = (place(ray % side, s), place(ray / side, t));
+            let point: DVec3 = match &cut {
+                Some(cut) => receiver.point + point_in_cut(cut, s, t),
+                None => cell.at(s, t),
+            };
+            lift(point, normal, extent).as_vec3()
+        };
+        if side == 1 {
+            self.pool(lane, contribution, aim(0), limits);
+        } else {
+            self.points[lane].push(contribution, (0..side * side).map(aim));
+        }
+    }
+}

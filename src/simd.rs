@@ -1,0 +1,93 @@
+//! Instruction sets: which this processor has, and code compiled for the widest of them.
+//!
+//! The one room beside `visibility` with unsafe code, behind a safe face. Nothing here changes a result: Rust fuses no operations, so the
+//! same code gives the same bits for every instruction set, in more or fewer numbers at a time.
+
+use std::sync::OnceLock;
+
+/// An instruction set that code is compiled for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Isa {
+    /// Whatever the program was compiled for.
+    Portable,
+    /// 8 single-precision numbers at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// 16 of them.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+/// Work that gains from wide instructions: plain loops over arrays, for the compiler to vectorise.
+pub trait Kernel {
+    /// What it gives.
+    type Output;
+
+    /// To be marked `#[inline(always)]`, and so all that it calls in its inner loops.
+    fn run(self) -> Self::Output;
+}
+
+impl Isa {
+    /// Those that this processor has, the best one last.
+    pub fn available() -> Vec<Self> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let mut available = vec![Self::Portable];
+            if is_x86_feature_detected!("avx2") {
+                available.push(Self::Avx2);
+            }
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512bw")
+            {
+                available.push(Self::Avx512);
+            }
+            available
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        vec![Self::Portable]
+    }
+
+    /// The best of them.
+    pub fn widest() -> Self {
+        static WIDEST: OnceLock<Isa> = OnceLock::new();
+        *WIDEST.get_or_init(|| *Self::available().last().expect("the portable one"))
+    }
+
+    /// For reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => "AVX2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => "AVX-512",
+        }
+    }
+
+    /// Runs `kernel`, compiled for this instruction set if the processor has it.
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Portable => kernel.run(),
+            // SAFETY: values other than `Portable` come from `available`, which found the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { run_avx2(kernel) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { run_avx512(kernel) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
