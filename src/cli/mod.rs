@@ -13,6 +13,7 @@ mod meshes;
 mod names;
 mod pictures;
 mod probe;
+mod profile;
 mod progress;
 mod render;
 mod resume;

@@ -2,6 +2,7 @@
 
 use super::CliError;
 use super::error::Code;
+use super::profile::profile;
 use super::progress::{Look, Watch, is_due, is_interrupted};
 use super::say::{self, is_quiet};
 use super::solve::{How, summary, write};
@@ -107,7 +108,12 @@ impl Session<'_> {
         match look {
             Look::Json => println!("{}", self.done(&solution)?),
             _ if is_quiet() => {}
-            _ => print!("{}", summary(&solution, seconds)),
+            _ => {
+                print!("{}", summary(&solution, seconds));
+                if self.how.profile {
+                    print!("{}", profile(&solution.report));
+                }
+            }
         }
         match solution.report.stop_reason {
             StopReason::Interrupted => Ok(Code::Interrupted),

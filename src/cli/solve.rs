@@ -69,6 +69,9 @@ pub(super) struct How {
     /// Show the solution in a window while it converges (feature `viewer`); closing it lets the solve go on, Ctrl-C ends it
     #[arg(long)]
     watch: bool,
+    /// Say where the time went; report.json always does
+    #[arg(long)]
+    pub profile: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,

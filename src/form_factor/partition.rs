@@ -20,6 +20,17 @@ pub struct SourceThresholds {
     pub scale: ToleranceScale,
 }
 
+impl SourceThresholds {
+    /// Both thresholds multiplied by `factor`.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            difference: self.difference * factor,
+            estimate: self.estimate * factor,
+            ..self
+        }
+    }
+}
+
 /// The irradiance that relative thresholds are multiples of: between the scene's reference and what is there,
 /// `reference^(1 - share) · local^share`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -125,8 +125,16 @@ impl Page<'_> {
             (
                 "time",
                 format!(
-                    "{:.2} s solving, {:.2} s reading, {:.2} s building, on {} threads",
-                    seconds.solve, seconds.load, seconds.build, report.threads
+                    "{:.2} s solving (shooting {:.2}, refining {:.2}, gathering {:.2}, estimating {:.2}), {:.2} s reading, \
+                     {:.2} s building, on {} threads",
+                    seconds.solve,
+                    seconds.parts.shooting,
+                    seconds.parts.refining,
+                    seconds.parts.gathering,
+                    seconds.parts.estimating,
+                    seconds.load,
+                    seconds.build,
+                    report.threads
                 ),
             ),
             (

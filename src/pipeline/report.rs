@@ -74,6 +74,7 @@ pub(super) fn take_in(
     report.power = PowerReport::new(&ledger, |p| p.element_sum());
     report.power_rgb = PowerReport::new(&ledger, |p| p.to_array());
     report.audit = outcome.audit;
+    report.seconds.parts += outcome.parts;
     (mesh, light, course)
 }
 

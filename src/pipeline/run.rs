@@ -10,7 +10,7 @@ use crate::solver::{
     Estimate, Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders,
 };
 use crate::threads::pool;
-use crate::visibility::{Visibility, build_within};
+use crate::visibility::{Clocked, Visibility, build_within};
 use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
@@ -41,8 +41,10 @@ impl Run {
         let threads = pool.current_num_threads();
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
         let triangles = occluders(&scene, &mesh);
+        let begun = Instant::now();
         let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
-        check_memory(&mesh, visibility.as_ref(), options.memory_limit)?;
+        let engine = begun.elapsed().as_secs_f64();
+        check_memory(&mesh, visibility.as_ref(), &options)?;
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
         report.target = target;
@@ -55,7 +57,9 @@ impl Run {
             spent: Duration::ZERO,
         };
         run.begin(scene, mesh, report);
-        run.report_mut().seconds.build = started.elapsed().as_secs_f64();
+        let seconds = &mut run.report_mut().seconds;
+        seconds.engine = engine;
+        seconds.build = started.elapsed().as_secs_f64();
         Ok(run)
     }
 
@@ -83,7 +87,9 @@ impl Run {
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
         let triangles = occluders(&continuation.scene, &solution.mesh);
+        let begun = Instant::now();
         let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        report.seconds.engine += begun.elapsed().as_secs_f64();
         let time_limit = options.time_limit;
         let now = blank(
             &continuation.scene,
@@ -210,10 +216,12 @@ impl Run {
         let mut options = report.options.clone();
         options.time_limit = self.time_limit;
         let state = (solution.mesh, solution.light, course);
-        let (visibility, spent) = (self.visibility.as_ref(), self.spent);
-        let outcome = self
+        let clocked = Clocked::new(self.visibility.as_ref());
+        let spent = self.spent;
+        let mut outcome = self
             .pool
-            .install(|| Solver::resume(&scene, state, visibility, options, spent).run(observer));
+            .install(|| Solver::resume(&scene, state, &clocked, options, spent).run(observer));
+        outcome.parts.rays = clocked.spent().as_secs_f64();
         self.spent = outcome.elapsed;
         if let Some(audit) = outcome.audit {
             observer.estimated(&Estimate {
@@ -255,14 +263,14 @@ impl Run {
 fn check_memory(
     mesh: &Mesh,
     visibility: &dyn Visibility,
-    limit: Option<u64>,
+    options: &Options,
 ) -> Result<(), SolveError> {
-    let elements = mesh.leaves().count();
-    let needed = memory_for(elements, visibility.info().bytes);
+    let limit = options.memory_limit;
+    let needed = memory_for(mesh, options, visibility.info().bytes);
     match limit.filter(|limit| needed > *limit) {
         None => Ok(()),
         Some(limit) => Err(SolveError::TooLarge {
-            elements,
+            elements: mesh.leaves().count(),
             needed: needed >> 20,
             limit: limit >> 20,
         }),

@@ -41,7 +41,7 @@ struct ReportThen {
     vertices: usize,
     buried_vertices: usize,
     rays: u64,
-    seconds: Seconds,
+    seconds: SecondsThen,
     stop_reason: StopReason,
     reference_irradiance: f64,
     power: PowerThen<f64>,
@@ -50,6 +50,14 @@ struct ReportThen {
     target: Option<TargetThen>,
     options: OptionsThen,
     warnings: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct SecondsThen {
+    load: f64,
+    build: f64,
+    solve: f64,
+    write: f64,
 }
 
 #[derive(Deserialize)]
@@ -136,7 +144,7 @@ impl From<ReportThen> for Report {
             vertices: then.vertices,
             buried_vertices: then.buried_vertices,
             rays: then.rays,
-            seconds: then.seconds,
+            seconds: then.seconds.into(),
             peak_memory: None,
             stop_reason: then.stop_reason,
             reference_irradiance: then.reference_irradiance,
@@ -146,6 +154,18 @@ impl From<ReportThen> for Report {
             target: then.target.map(TargetReport::from),
             options: then.options.into(),
             warnings: then.warnings,
+        }
+    }
+}
+
+impl From<SecondsThen> for Seconds {
+    fn from(then: SecondsThen) -> Self {
+        Self {
+            load: then.load,
+            build: then.build,
+            solve: then.solve,
+            write: then.write,
+            ..Self::default()
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a solve says of itself: `report.json`.
 
 use crate::radiometry::Power;
-use crate::solver::{Audit, Changes, Ledger, MeshingEnd, Options, StopReason};
+use crate::solver::{Audit, Changes, Ledger, MeshingEnd, Options, Parts, StopReason};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -98,8 +98,14 @@ pub struct Seconds {
     pub load: f64,
     /// Building mesh and visibility engine.
     pub build: f64,
-    /// Shooting and refining.
+    /// The engine's part of it.
+    #[serde(default)]
+    pub engine: f64,
+    /// From the first shot to the estimate of the error.
     pub solve: f64,
+    /// Where that went.
+    #[serde(default)]
+    pub parts: Parts,
     /// Writing results; in a stored solution, what was written before it.
     pub write: f64,
 }

@@ -9,7 +9,6 @@ use super::error::{ErrorModel, Squares};
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::{Shooter, evaluate};
-use super::tiling::Tiling;
 use crate::form_factor::{Receiver, Sampler, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
@@ -71,15 +70,14 @@ impl Span {
 
 impl Solver<'_> {
     /// Looks again at `options.audit_points` points; `None` if that is 0 or there is no light.
-    pub(super) fn audit(&self) -> Option<Audit> {
+    pub(super) fn audit(&mut self) -> Option<Audit> {
         let places = places(&self.mesh, self.options.audit_points);
         if places.is_empty() {
             return None;
         }
         let whole = self.whole(Spectrum::ONE);
         let mut fine = self.sampler();
-        fine.thresholds.difference *= FINER;
-        fine.thresholds.estimate *= FINER;
+        fine.thresholds = fine.thresholds.scaled(FINER);
         let plain = self.sampler();
         let known: Vec<Spectrum> = places
             .iter()
@@ -156,12 +154,12 @@ impl Solver<'_> {
 
     /// The same of all patches at once.
     fn second_look_at_clusters(
-        &self,
+        &mut self,
         whole: &Light,
         (fine, plain): (&Sampler, &Sampler),
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
-        let mut shooter = Tiling::new(&self.mesh).radiating(&self.mesh, whole);
+        let mut shooter = self.tiling().radiating(&self.mesh, whole);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
             let ones = vec![Spectrum::ONE; tiling.clusters.tiles().len()];

@@ -7,7 +7,7 @@ use super::options::Options;
 use super::shoot::{Shooter, evaluate};
 use super::source::{cells_of, source_from};
 use super::tiling::Tiling;
-use crate::form_factor::{Receiver, Sampler, SourceThresholds, ToleranceScale};
+use crate::form_factor::{Receiver, Sampler};
 use crate::geometry::{cosine_direction, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
@@ -130,15 +130,7 @@ impl<'a> OpenLight<'a> {
             visibility,
             extent: self.mesh.frame.extent(),
             formula: self.options.formula(),
-            thresholds: SourceThresholds {
-                difference: self.options.epsilon_fd * finer,
-                estimate: self.options.epsilon_fe * finer,
-                raw: self.options.raw_form_factors,
-                scale: ToleranceScale {
-                    reference: self.reference,
-                    local_share: self.options.local_share,
-                },
-            },
+            thresholds: self.options.source_thresholds(self.reference).scaled(finer),
         };
         if let Some(all) = &self.clusters {
             let (gathers, _) = evaluate(&sampler, all, receivers);

@@ -1,6 +1,6 @@
 //! Every threshold of the method, and three presets.
 
-use crate::form_factor::{DEEPEST, Formula};
+use crate::form_factor::{DEEPEST, Formula, SourceThresholds, ToleranceScale};
 use crate::mesh::{Mesh, MeshLimits};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -250,6 +250,19 @@ impl Options {
             FormFactorRule::Hybrid => Formula::Hybrid(self.distance_factor),
             FormFactorRule::Disk => Formula::Disk,
             FormFactorRule::Polygon => Formula::Polygon,
+        }
+    }
+
+    /// The thresholds for sources; relative ones are multiples of `reference` and of what is there.
+    pub(super) fn source_thresholds(&self, reference: f64) -> SourceThresholds {
+        SourceThresholds {
+            difference: self.epsilon_fd,
+            estimate: self.epsilon_fe,
+            raw: self.raw_form_factors,
+            scale: ToleranceScale {
+                reference,
+                local_share: self.local_share,
+            },
         }
     }
 

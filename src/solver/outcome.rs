@@ -4,6 +4,7 @@ use super::audit::Audit;
 use super::course::Course;
 use super::ledger::Ledger;
 use super::light::Light;
+use super::parts::Parts;
 use crate::mesh::Mesh;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -43,4 +44,6 @@ pub struct Outcome {
     pub stop_reason: StopReason,
     /// Time that it took in all.
     pub elapsed: Duration,
+    /// Where the time of this run went; its rays are the caller's to measure.
+    pub parts: Parts,
 }

@@ -1,7 +1,11 @@
 //! How much more the mesh may grow: the limits on elements and on memory.
 
 use super::course::MeshingEnd;
+use super::options::Options;
 use super::run::Solver;
+use super::tiling::tile_count;
+use crate::form_factor::Clusters;
+use crate::mesh::Mesh;
 
 /// Memory that a leaf takes in all, at the peak of a run that writes everything there is to write: its vertices and parents, the
 /// light, what a shot keeps, the triangles of the results. On the Cornell box 1000 to 1200 were measured (`peak_memory` in the
@@ -14,9 +18,19 @@ const BYTES_BEFORE: u64 = 64 << 20;
 /// Leaves that go with each split: three more, and as many again for the balance.
 const LEAVES_PER_SPLIT: usize = 6;
 
-/// Memory that a run with so many leaves takes in all, bytes, if its engine holds `engine`.
-pub fn memory_for(leaves: usize, engine: u64) -> u64 {
-    BYTES_BEFORE + engine + leaves as u64 * BYTES_PER_LEAF
+/// Memory that a run takes in all, bytes, if it refines `mesh` no further and its engine holds `engine`.
+pub fn memory_for(mesh: &Mesh, options: &Options, engine: u64) -> u64 {
+    without_leaves(mesh, options, engine) + mesh.leaves().count() as u64 * BYTES_PER_LEAF
+}
+
+/// The part of it that does not grow with the leaves.
+fn without_leaves(mesh: &Mesh, options: &Options, engine: u64) -> u64 {
+    let tiles = if options.clusters(mesh) {
+        tile_count(mesh)
+    } else {
+        0
+    };
+    BYTES_BEFORE + engine + Clusters::bytes_for(tiles)
 }
 
 impl Solver<'_> {
@@ -36,7 +50,8 @@ impl Solver<'_> {
     fn most_leaves(&self) -> Option<(usize, MeshingEnd)> {
         let elements = self.options.max_elements;
         let memory = self.options.memory_limit.map(|limit| {
-            let before = memory_for(0, self.visibility.info().bytes);
+            let engine = self.visibility.info().bytes;
+            let before = without_leaves(&self.mesh, &self.options, engine);
             (limit.saturating_sub(before) / BYTES_PER_LEAF) as usize
         });
         let elements = elements.map(|most| (most, MeshingEnd::MaxElements));

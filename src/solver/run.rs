@@ -10,6 +10,7 @@ use super::light::{Light, Sign};
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
+use super::parts::{Laps, Parts};
 use super::shoot::Shooter;
 use super::tiling::Tiling;
 use crate::geometry::polygon::vector_area;
@@ -41,6 +42,7 @@ pub struct Solver<'a> {
     /// What the solve took before it was taken up again.
     spent: Duration,
     started: Instant,
+    laps: Laps,
 }
 
 /// The triangles of a scene for a visibility engine, in the frame of `mesh`: in the order of the surfaces, two for each quad.
@@ -99,6 +101,7 @@ impl<'a> Solver<'a> {
             options,
             spent,
             started: Instant::now(),
+            laps: Laps::new(),
         }
     }
 
@@ -109,6 +112,7 @@ impl<'a> Solver<'a> {
             StopReason::NoEmitter | StopReason::Interrupted => None,
             _ => self.audit(),
         };
+        self.laps.lap(|parts| &mut parts.estimating);
         self.outcome(stop_reason, audit)
     }
 
@@ -123,6 +127,7 @@ impl<'a> Solver<'a> {
         let ledger = Ledger::balance(&self.mesh, &self.light, &lost, self.square_metres);
         Outcome {
             elapsed: self.elapsed(),
+            parts: self.laps.parts,
             mesh: self.mesh,
             light: self.light,
             course: self.course,
@@ -146,6 +151,8 @@ impl<'a> Solver<'a> {
             if self.options.time_limit.is_some_and(|most| elapsed >= most) {
                 return StopReason::TimeLimit;
             }
+            self.laps.lap(|parts| &mut parts.selecting);
+            let part = part(&self.course.stage);
             match std::mem::take(&mut self.course.stage) {
                 Stage::Shooting => {
                     if let Some(reason) = self.shoot() {
@@ -161,6 +168,7 @@ impl<'a> Solver<'a> {
                     return StopReason::Converged;
                 }
             }
+            self.laps.lap(part);
         }
     }
 
@@ -169,6 +177,7 @@ impl<'a> Solver<'a> {
         let powers = self.unshot_powers();
         let emitted = self.emitted().element_sum();
         let unshot: Power = powers.iter().sum();
+        self.laps.lap(|parts| &mut parts.selecting);
         if unshot.element_sum() <= self.options.tolerance * emitted {
             match (self.options.regather, self.is_clustered()) {
                 (false, _) => self.course.stage = Stage::Finished,
@@ -186,6 +195,7 @@ impl<'a> Solver<'a> {
             return None;
         }
         let strongest = select(&powers);
+        self.laps.lap(|parts| &mut parts.selecting);
         let power = powers[strongest].element_sum() / emitted;
         self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
         None
@@ -251,6 +261,16 @@ fn backing(scene: &Scene, mesh: &Mesh) -> Vec<Backing> {
         backing.extend(std::iter::repeat_n(side, corners.len() - 2));
     }
     backing
+}
+
+/// What a stage counts as.
+fn part(stage: &Stage) -> fn(&mut Parts) -> &mut f64 {
+    match stage {
+        Stage::Refining(_) | Stage::Settling(_) => |parts| &mut parts.refining,
+        Stage::Gathering(_) => |parts| &mut parts.gathering,
+        Stage::Waving(wave) if wave.is_whole() => |parts| &mut parts.gathering,
+        Stage::Waving(_) | Stage::Shooting | Stage::Finished => |parts| &mut parts.shooting,
+    }
 }
 
 /// The largest power; the first of equals.

@@ -8,7 +8,7 @@ use super::refine::Refinement;
 use super::run::Solver;
 use super::shoot::{Beam, Shooter, faces, shoot_at};
 use super::source::{cells_of, source_from};
-use crate::form_factor::{Cell, Gather, Sampler, Source, SourceThresholds, ToleranceScale};
+use crate::form_factor::{Cell, Gather, Sampler, Source};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
@@ -149,7 +149,7 @@ impl<'a> Solver<'a> {
             visibility: self.visibility,
             extent: self.mesh.frame.extent(),
             formula: self.options.formula(),
-            thresholds: self.source_thresholds(),
+            thresholds: self.options.source_thresholds(self.reference),
         }
     }
 
@@ -212,17 +212,5 @@ impl<'a> Solver<'a> {
             .interpolate(self.mesh.leaf_at(patch as u32, u, v), point);
         let nearest = weighted.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         nearest.is_none_or(|(vertex, _)| !self.mesh.buried[*vertex as usize])
-    }
-
-    fn source_thresholds(&self) -> SourceThresholds {
-        SourceThresholds {
-            difference: self.options.epsilon_fd,
-            estimate: self.options.epsilon_fe,
-            raw: self.options.raw_form_factors,
-            scale: ToleranceScale {
-                reference: self.reference,
-                local_share: self.options.local_share,
-            },
-        }
     }
 }

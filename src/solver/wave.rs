@@ -162,8 +162,7 @@ impl<'a> Solver<'a> {
     /// For light that the gathering at the end will ask for once more.
     pub(super) fn coarse_sampler(&self) -> Sampler<'a> {
         let mut sampler = self.sampler();
-        sampler.thresholds.difference *= COARSER;
-        sampler.thresholds.estimate *= COARSER;
+        sampler.thresholds = sampler.thresholds.scaled(COARSER);
         sampler
     }
 

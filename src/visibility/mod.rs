@@ -12,6 +12,7 @@
 mod brute_force;
 mod bvh;
 mod choice;
+mod clocked;
 #[cfg(embree)]
 mod embree;
 mod triangles;
@@ -19,6 +20,7 @@ mod triangles;
 pub use brute_force::BruteForce;
 pub use bvh::Obvhs;
 pub use choice::{EngineChoice, UnknownEngine, VisibilityError, build, build_within};
+pub use clocked::Clocked;
 #[cfg(embree)]
 pub use embree::Embree;
 pub use triangles::Triangles;

@@ -74,7 +74,10 @@ fn the_report_holds_every_figure() {
     }
     for (part, keys) in [
         ("engine", &["name", "version", "isa", "packet_width"][..]),
-        ("seconds", &["load", "build", "solve", "write"]),
+        (
+            "seconds",
+            &["load", "build", "engine", "solve", "parts", "write"],
+        ),
         (
             "power",
             &["emitted", "absorbed", "escaped", "unshot", "residual"],
@@ -140,6 +143,42 @@ fn threads_and_options_are_those_asked_for() {
         "solution.vtu",
     ];
     assert_eq!(names(&output), left);
+}
+
+#[test]
+fn a_profile_accounts_for_the_time() {
+    let folder = folder();
+    let run = radiosity(&[
+        "solve",
+        text(&scene("cornell-box")),
+        "-o",
+        text(folder.path()),
+        "--preset",
+        "draft",
+        "--no-pictures",
+        "--profile",
+    ]);
+    run.assert_success();
+    for part in ["build engine", "shoot", "gather", "rays took"] {
+        assert!(run.out.contains(part), "no {part}: {}", run.out);
+    }
+    let seconds = &report(folder.path())["seconds"];
+    let of = |part: &str| seconds["parts"][part].as_f64().expect("seconds");
+    let parts = [
+        "selecting",
+        "shooting",
+        "refining",
+        "gathering",
+        "estimating",
+    ];
+    let sum: f64 = parts.into_iter().map(of).sum();
+    let solve = seconds["solve"].as_f64().expect("seconds");
+    assert!(
+        sum <= solve && sum > 0.5 * solve,
+        "{sum} of {solve}: {}",
+        run.out
+    );
+    assert!(of("rays") > 0.0 && of("shooting") > 0.0 && of("gathering") > 0.0);
 }
 
 #[test]

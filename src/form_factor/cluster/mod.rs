@@ -155,10 +155,10 @@ impl Clusters {
         self.tiles.iter().zip(self.radiosity.iter().copied())
     }
 
-    /// Memory that the tree holds, bytes.
-    pub fn bytes(&self) -> usize {
-        self.nodes.capacity() * (size_of::<Node>() + size_of::<Sends>())
-            + self.tiles.capacity()
-                * (size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>() + size_of::<f64>())
+    /// Memory that a tree over so many tiles holds, bytes.
+    pub const fn bytes_for(tiles: usize) -> u64 {
+        let node = size_of::<Node>() + size_of::<Sends>();
+        let tile = size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>() + size_of::<f64>();
+        (tiles * (2 * node + tile)) as u64
     }
 }
