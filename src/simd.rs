@@ -27,6 +27,12 @@ pub trait Kernel {
     fn run(self) -> Self::Output;
 }
 
+impl Default for Isa {
+    fn default() -> Self {
+        Self::widest()
+    }
+}
+
 impl Isa {
     /// Those that this processor has, the best one last.
     pub fn available() -> Vec<Self> {

@@ -13,6 +13,8 @@ use crate::visibility::{Fans, MAX_FAN};
 /// Memory of a thread, reused between blocks.
 #[derive(Default)]
 pub struct ClusterScratch {
+    /// What points walk the tree with.
+    pub(super) isa: Isa,
     pending: Vec<(u32, Mask)>,
     points: Vec<Found>,
     fans: Fans,
@@ -31,6 +33,7 @@ impl Sampler<'_> {
         gathers: &mut Vec<Gather>,
     ) -> u64 {
         let ClusterScratch {
+            isa,
             pending,
             points,
             fans,
@@ -41,7 +44,7 @@ impl Sampler<'_> {
         }
         let points = &mut points[..receivers.len()];
         for (receivers, points) in receivers.chunks(LANES).zip(points.chunks_mut(LANES)) {
-            Isa::widest().run(Walk {
+            isa.run(Walk {
                 sampler: self,
                 clusters,
                 receivers,

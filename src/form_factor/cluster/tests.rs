@@ -6,6 +6,7 @@ use crate::form_factor::{
 };
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
+use crate::simd::Isa;
 use crate::visibility::{BruteForce, Triangles};
 use glam::DVec3;
 
@@ -68,6 +69,17 @@ fn gathered(
     threshold: f64,
     settled: bool,
 ) -> Vec<Gather> {
+    let all = (tiles, radiosities);
+    gathered_with(Isa::widest(), all, receivers, threshold, settled)
+}
+
+fn gathered_with(
+    isa: Isa,
+    (tiles, radiosities): (&[Tile], Vec<Spectrum>),
+    receivers: &[(Receiver, u32)],
+    threshold: f64,
+    settled: bool,
+) -> Vec<Gather> {
     let nothing = BruteForce::new(&Triangles::default()).expect("no triangle is a sound scene");
     let sampler = Sampler {
         visibility: &nothing,
@@ -85,14 +97,10 @@ fn gathered(
     };
     let mut clusters = Clusters::new(tiles.to_vec(), 5.0);
     clusters.radiate(radiosities, 1);
+    let mut scratch = ClusterScratch::default();
+    scratch.isa = isa;
     let mut gathers = Vec::new();
-    sampler.gather_clusters(
-        &clusters,
-        receivers,
-        settled,
-        &mut ClusterScratch::default(),
-        &mut gathers,
-    );
+    sampler.gather_clusters(&clusters, receivers, settled, &mut scratch, &mut gathers);
     gathers
 }
 
@@ -133,6 +141,22 @@ fn what_clusters_give_tends_to_what_their_tiles_give() {
     let found = [0.1, 0.02, 0.004].map(|threshold| deviation(threshold, false));
     let is_fair = |(rms, bias): &(f64, f64)| bias.abs() <= 3.0 * standard_error(*rms);
     assert!(found.iter().all(is_fair), "{found:?}");
+}
+
+#[test]
+fn all_instruction_sets_give_the_same_bits() {
+    let (tiles, receivers) = (balls(12), receivers(100));
+    for settled in [false, true] {
+        let with = |isa: Isa| {
+            let all = (tiles.as_slice(), radiosities(&tiles));
+            gathered_with(isa, all, &receivers, 0.02, settled)
+        };
+        let expected = with(Isa::Portable);
+        assert!(expected.iter().any(|g| g.irradiance != Spectrum::ZERO));
+        for isa in Isa::available() {
+            assert!(with(isa) == expected, "{isa:?}, settled {settled}");
+        }
+    }
 }
 
 /// The inside of a unit cube, each side in 32 by 32 tiles, and points on it.
