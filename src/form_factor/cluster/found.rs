@@ -9,8 +9,8 @@ use glam::Vec3;
 /// What is pooled for one ray gives at least this part of ε_fe.
 const POOLED: f32 = 0.25;
 
-/// What a draw settles is bounded by this many times ε_fe: of such a bound little arrives.
-const LOOSE: f32 = 0.5;
+/// What a draw settles is bounded by this many times ε_fe: with 0.5, draws were noisier than the tests of clusters allow.
+const LOOSE: f32 = 0.1;
 
 /// What a point gets from a cluster or tile, if all of its rays arrive.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,6 @@ struct Pool {
 struct Loose {
     /// Σ of the bounds of all.
     bounds: f32,
-    draws: u32,
     drawn: Drawn,
 }
 
@@ -115,25 +114,22 @@ impl Found {
     pub fn loosen(&mut self, cluster: u32, bound: f32, estimate: f32, key: u32) -> Option<Drawn> {
         let loose = &mut self.loose;
         loose.bounds += bound;
-        loose.draws += 1;
-        if loose.draws == 1 || jitter(key, cluster)[0] as f32 * loose.bounds < bound {
+        if loose.drawn.bound == 0.0 || jitter(key, cluster)[0] as f32 * loose.bounds < bound {
             loose.drawn.cluster = cluster;
             loose.drawn.bound = bound;
         }
-        (loose.bounds >= LOOSE * estimate)
-            .then(|| self.empty_loose())
-            .flatten()
+        if loose.bounds >= LOOSE * estimate {
+            self.empty_loose()
+        } else {
+            None
+        }
     }
 
     /// One to be drawn from of what is left.
     pub fn empty_loose(&mut self) -> Option<Drawn> {
-        let Loose {
-            bounds,
-            draws,
-            drawn,
-        } = std::mem::take(&mut self.loose);
+        let Loose { bounds, drawn } = std::mem::take(&mut self.loose);
         let stands_for = bounds / drawn.bound;
-        (draws > 0 && drawn.bound > 0.0).then_some(Drawn {
+        (drawn.bound > 0.0).then_some(Drawn {
             stands_for,
             ..drawn
         })
