@@ -3,6 +3,7 @@
 //! `cargo bench --bench growth` solves each as a draft and prints where the time went, the exponent of the time from one size to the next,
 //! and the memory that the process has held at most by vertex of the mesh. `cargo bench --bench growth -- 5000000` ends at that size.
 
+use radiosity::cli::peak_memory;
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent};
 use radiosity::{Settings, solve};
@@ -46,6 +47,7 @@ fn main() {
         let total = started.elapsed().as_secs_f64();
         let report = &solution.report;
         let parts = &report.seconds.parts;
+        let memory = peak_memory().map_or(f64::NAN, |bytes| bytes as f64);
         let exponent = before.map_or(f64::NAN, |(n, t)| {
             (total / t).ln() / (triangles as f64 / n as f64).ln()
         });
@@ -59,7 +61,7 @@ fn main() {
             total - load - report.seconds.build - report.seconds.solve,
             report.rays as f64 / 1e6,
             100.0 * report.power.unshot.abs() / report.power.emitted,
-            peak_memory() / report.vertices as f64,
+            memory / report.vertices as f64,
         );
         before = Some((triangles, total));
     }
@@ -158,12 +160,4 @@ impl Hall {
             }
         }
     }
-}
-
-/// The most memory that the process has held, bytes, where the system tells.
-fn peak_memory() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|l| l.trim().trim_end_matches("kB").trim().parse::<f64>().ok());
-    kilobytes.map_or(f64::NAN, |k| 1024.0 * k)
 }

@@ -1,7 +1,7 @@
 //! What the system tells of the process.
 
 /// The most memory that the process has held so far, bytes; where Linux tells.
-pub(super) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
         .lines()

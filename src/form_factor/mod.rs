@@ -2,7 +2,7 @@
 //! adaptively sampled source.
 //!
 //! F(x, s) is the cosine-weighted fraction of the hemisphere above x that the polygon s fills, so that the
-//! irradiance is E(x) = Σ F(x, s) B(s). Imports `geometry`, `radiometry` and the visibility trait.
+//! irradiance is E(x) = Σ F(x, s) B(s). Imports `geometry`, `radiometry`, `simd` and the visibility trait.
 
 mod cluster;
 mod disagreement;

@@ -265,16 +265,18 @@ fn check_memory(
     visibility: &dyn Visibility,
     options: &Options,
 ) -> Result<(), SolveError> {
-    let limit = options.memory_limit;
+    let Some(limit) = options.memory_limit else {
+        return Ok(());
+    };
     let needed = memory_for(mesh, options, visibility.info().bytes);
-    match limit.filter(|limit| needed > *limit) {
-        None => Ok(()),
-        Some(limit) => Err(SolveError::TooLarge {
-            elements: mesh.leaves().count(),
-            needed: needed >> 20,
-            limit: limit >> 20,
-        }),
+    if needed <= limit {
+        return Ok(());
     }
+    Err(SolveError::TooLarge {
+        elements: mesh.leaves().count(),
+        needed: needed >> 20,
+        limit: limit >> 20,
+    })
 }
 
 /// Why there is always a solution, and one that can go on.

@@ -60,10 +60,7 @@ impl<'a> Solver<'a> {
 
     /// One pass of refinement for what a shot gave.
     pub(super) fn refine(&mut self, mut shot: Shot) {
-        let shooter = match shot.made.take() {
-            Some(made) => made,
-            None => self.made(&shot),
-        };
+        let shooter = self.made(&mut shot, false);
         let sampler = self.sampler();
         self.pass(&mut shot, &sampler, &shooter);
         let is_done = shot.candidates.is_empty();
@@ -105,11 +102,12 @@ impl<'a> Solver<'a> {
         self.mesh.integrate();
     }
 
-    /// What shoots, made anew from what is kept of it.
-    fn made(&mut self, shot: &Shot) -> Shooter {
-        match shot.shooter {
-            ALL => self.radiating(&shot.cells, false),
-            _ => shot.source(&self.mesh),
+    /// What shoots; made anew from what is kept of it, if need be.
+    pub(super) fn made(&mut self, shot: &mut Shot, settled: bool) -> Shooter {
+        match (shot.made.take(), shot.shooter) {
+            (Some(made), _) => made,
+            (None, ALL) => self.radiating(&shot.cells, settled),
+            (None, _) => shot.source(&self.mesh),
         }
     }
 
@@ -130,8 +128,7 @@ impl<'a> Solver<'a> {
                 return Lost::default();
             }
         };
-        let shooter = shot.made.take();
-        let shooter = shooter.unwrap_or_else(|| self.made(&shot));
+        let shooter = self.made(&mut shot, false);
         let lost = self.escape_of(&shot, &shooter);
         shot.made = Some(shooter);
         self.course.stage = Stage::Refining(shot);

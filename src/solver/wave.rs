@@ -198,11 +198,10 @@ impl<'a> Solver<'a> {
 
     fn arrive_whole(&mut self, wave: Wave, ambient: Spectrum) {
         let whole: Light = self.whole(ambient);
-        let Some(all) = self.radiated.take() else {
+        let Some(all) = &self.radiated else {
             return;
         };
-        let lost = self.escape_of_all(&all, wave.power);
-        self.radiated = Some(all);
+        let lost = self.escape_of_all(all, wave.power);
         let irradiance = wave.arrived.iter().map(|g| g.irradiance).collect();
         self.take_over(irradiance, &whole, lost, Vec::new());
         let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
@@ -229,10 +228,7 @@ impl<'a> Solver<'a> {
 
     /// One pass of refinement for what was gathered of all light. The solve ends when there is nothing to split.
     pub(super) fn settle(&mut self, mut shot: Shot) {
-        let all = match shot.made.take() {
-            Some(all) => all,
-            None => self.radiating(&shot.cells, true),
-        };
+        let all = self.made(&mut shot, true);
         let sampler = self.sampler();
         self.pass(&mut shot, &sampler, &all);
         if shot.candidates.is_empty() {
