@@ -11,6 +11,7 @@ mod buried;
 mod contact;
 mod element;
 mod fan;
+mod integral;
 mod lattice;
 mod patch;
 mod refine;
@@ -52,8 +53,8 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Vertices inside a solid; see [`Mesh::continue_to_buried`].
     pub buried: Vec<bool>,
-    /// The area that the interpolant gives to each vertex, 0 if it is buried: the integral of an interpolated quantity
-    /// over what is open is Σ weight · value.
+    /// The area that each vertex stands for, 0 if it is buried: the integral of a quantity over what is open is Σ weight · value,
+    /// exact to the second degree.
     #[serde(skip)]
     pub weights: Vec<f64>,
     /// The same with the buried part.

@@ -143,29 +143,4 @@ impl Mesh {
         self.buried.resize(self.vertices.len(), false);
         self.plan_continuation();
     }
-
-    /// Computes the weights with which values at vertices are integrated; to be called after [`Self::finish_topology`].
-    pub fn integrate(&mut self) {
-        self.full_weights.clear();
-        self.full_weights.resize(self.vertices.len(), 0.0);
-        let positions: Vec<DVec3> = (0..self.vertices.len() as u32)
-            .map(|v| self.position(v))
-            .collect();
-        for element in self.leaves().collect::<Vec<_>>() {
-            for triangle in self.fan(element) {
-                let [a, b, c] = triangle.map(|v| positions[v as usize]);
-                let third = (b - a).cross(c - a).length() / 6.0;
-                for vertex in triangle {
-                    self.full_weights[vertex as usize] += third;
-                }
-            }
-        }
-        let open = |(w, buried): (&f64, &bool)| if *buried { 0.0 } else { *w };
-        self.weights = self
-            .full_weights
-            .iter()
-            .zip(&self.buried)
-            .map(open)
-            .collect();
-    }
 }

@@ -11,6 +11,7 @@ mod energy;
 mod estimate;
 mod exact_floor;
 mod furnace;
+mod integral;
 mod path_traced;
 mod places;
 mod resume;

@@ -1,0 +1,44 @@
+//! What a mesh receives: the weights with which values at vertices are integrated.
+
+use super::Mesh;
+use glam::DVec3;
+
+/// How much of its area a quadrilateral, and a triangle, gives to its centre beyond what the linear interpolant on its fan does, at
+/// its corners' expense. Light is mostly curved one way over an element: the interpolant cuts its tops off, and each reflection would
+/// lose as much again. With these the integral over a triangle or a parallelogram is exact for polynomials of second
+/// degree: a third of the mean of the corners and two thirds of the centre, a quarter and three quarters.
+const SAG: [f64; 2] = [1.0 / 3.0, 5.0 / 12.0];
+
+impl Mesh {
+    /// Computes the weights; to be called after [`Self::finish_topology`].
+    pub fn integrate(&mut self) {
+        let mut weights = vec![0.0; self.vertices.len()];
+        let positions: Vec<DVec3> = (0..self.vertices.len() as u32)
+            .map(|v| self.position(v))
+            .collect();
+        let at = |v: u32| positions[v as usize];
+        for leaf in self.leaves() {
+            let of = &self.elements[leaf as usize];
+            let corners = of.corners();
+            let mut whole = 0.0;
+            for (_, a, b) in of.sides() {
+                let centre = at(of.centre);
+                let area = (at(a) - centre).cross(at(b) - centre).length() / 2.0;
+                for vertex in [of.centre, a, b] {
+                    weights[vertex as usize] += area / 3.0;
+                }
+                whole += area;
+            }
+            let sag = whole * SAG[usize::from(corners.len() == 3)];
+            weights[of.centre as usize] += sag;
+            for corner in corners {
+                weights[*corner as usize] -= sag / corners.len() as f64;
+            }
+        }
+        // No less than nothing, but for rounding.
+        weights.iter_mut().for_each(|w| *w = w.max(0.0));
+        let open = |(w, buried): (&f64, &bool)| if *buried { 0.0 } else { *w };
+        self.weights = weights.iter().zip(&self.buried).map(open).collect();
+        self.full_weights = weights;
+    }
+}
