@@ -5,19 +5,24 @@
 
 use super::light::Sign;
 use super::run::Solver;
+use super::sheets::{see_one_another, sheets};
 use super::shoot::{Beam, evaluate, receiver_at};
 use super::tiling::SIZE;
-use crate::geometry::{Sets, facing, jitter};
+use crate::geometry::{facing, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::Spectrum;
+use crate::visibility::Visibility;
+use glam::Vec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
 /// Slices of a cube.
 const SLICES: f64 = 4.0;
 
 /// Patches that hang together are received for apart from others nearby if they have this part of the area of a side of a cube.
 const LARGE: f64 = 1.0 / 16.0;
+
+/// Pools that a small part of a cube is tried with.
+const MOST_POOLS: usize = 4;
 
 /// Vertices that a neighbourhood receives at.
 const SAMPLES: usize = 2;
@@ -31,46 +36,45 @@ pub(super) struct Neighbourhoods {
 }
 
 impl Neighbourhoods {
-    pub fn new(mesh: &Mesh) -> Self {
+    pub fn new(mesh: &Mesh, visibility: &dyn Visibility) -> Self {
         // As long as tiles.
         let side = SIZE * mesh.frame.extent();
-        let bodies = bodies(mesh);
-        let body = |v: u32| bodies[mesh.vertices[v as usize].patch as usize];
+        let sheets = sheets(mesh, visibility, side / SLICES);
+        let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
         let mut keyed: Vec<((u64, u64, u32), u32)> = (0..mesh.vertices.len() as u32)
             .into_par_iter()
-            .filter(|v| mesh.weights[*v as usize] > 0.0)
+            .filter(|v| !mesh.buried[*v as usize])
             .map(|v| {
                 let (cube, slice) = key(mesh, v, side);
-                ((cube, slice, body(v)), v)
+                ((cube, slice, sheet(v)), v)
             })
             .collect();
         keyed.par_sort_unstable();
+        let sees = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(|v| above(mesh, v, side));
+            see_one_another(visibility, a, b)
+        };
+        let cubes: Vec<Vec<Vec<u32>>> = keyed
+            .par_chunk_by(|a, b| a.0.0 == b.0.0)
+            .map(|cube| {
+                let parts = cube.chunk_by(|a, b| a.0 == b.0);
+                let parts = parts.map(|part| part.iter().map(|(_, v)| *v).collect());
+                let area = |of: &[u32]| of.iter().map(|v| weight(mesh, *v)).sum::<f64>();
+                let is_large = |of: &Vec<u32>| area(of) >= LARGE * side * side;
+                let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
+                large.extend(pooled(small, sees));
+                large
+            })
+            .collect();
         let mut near = Self {
             vertices: Vec::with_capacity(keyed.len()),
             ends: Vec::new(),
         };
-        let mut small = Vec::new();
-        for cube in keyed.chunk_by(|a, b| a.0.0 == b.0.0) {
-            for sheet in cube.chunk_by(|a, b| a.0 == b.0) {
-                let vertices = sheet.iter().map(|(_, v)| *v);
-                let area: f64 = vertices.clone().map(|v| mesh.weights[v as usize]).sum();
-                if area >= LARGE * side * side {
-                    near.add(vertices);
-                } else {
-                    small.extend(vertices);
-                }
-            }
-            near.add(small.drain(..));
+        for vertices in cubes.iter().flatten() {
+            near.vertices.extend(vertices);
+            near.ends.push(near.vertices.len() as u32);
         }
         near
-    }
-
-    fn add(&mut self, vertices: impl Iterator<Item = u32>) {
-        let before = self.vertices.len();
-        self.vertices.extend(vertices);
-        if self.vertices.len() > before {
-            self.ends.push(self.vertices.len() as u32);
-        }
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
@@ -78,21 +82,6 @@ impl Neighbourhoods {
         let ranges = begins.zip(&self.ends);
         ranges.map(|(begin, end)| &self.vertices[begin as usize..*end as usize])
     }
-}
-
-/// Patches that share corners make one body; by patch, the first of its own.
-fn bodies(mesh: &Mesh) -> Vec<u32> {
-    let mut bodies = Sets::new(mesh.patches.len());
-    let mut first_at = FxHashMap::default();
-    for (number, patch) in (0..).zip(&mesh.patches) {
-        for corner in patch.corners() {
-            let place = corner.to_array().map(f64::to_bits);
-            bodies.join(*first_at.entry(place).or_insert(number), number);
-        }
-    }
-    (0..mesh.patches.len() as u32)
-        .map(|patch| bodies.root(patch))
-        .collect()
 }
 
 /// The cube that a vertex is in with the way its patch faces, fronts apart from backs, and the slice of the cube across that way: the
@@ -109,15 +98,38 @@ fn key(mesh: &Mesh, vertex: u32, side: f64) -> (u64, u64) {
     (turned << 60 | x << 40 | y << 20 | z, slice)
 }
 
+/// Parts that can see one another put together.
+fn pooled(parts: Vec<Vec<u32>>, sees: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>> {
+    let mut pools: Vec<Vec<u32>> = Vec::new();
+    for part in parts {
+        let mut recent = pools.iter_mut().rev().take(MOST_POOLS);
+        match recent.find(|pool| sees(part[0], pool[0])) {
+            Some(pool) => pool.extend(part),
+            None => pools.push(part),
+        }
+    }
+    pools
+}
+
+/// A point above a vertex, for looking around in a cube with sides of that length.
+fn above(mesh: &Mesh, vertex: u32, side: f64) -> Vec3 {
+    let (point, normal) = mesh.receiver(vertex);
+    (point + normal * (side / 16.0)).as_vec3()
+}
+
+fn weight(mesh: &Mesh, vertex: u32) -> f64 {
+    mesh.weights[vertex as usize].max(f64::MIN_POSITIVE)
+}
+
 /// A few vertices, drawn in proportion to the area that each stands for.
 fn drawn(mesh: &Mesh, of: &[u32], seed: u32) -> impl Iterator<Item = u32> {
     let count = of.len().min(SAMPLES);
-    let area: f64 = of.iter().map(|v| mesh.weights[*v as usize]).sum();
+    let area: f64 = of.iter().map(|v| weight(mesh, *v)).sum();
     let step = area / count as f64;
     let mut next = jitter(of[0], seed)[0] * step;
     let mut passed = 0.0;
     of.iter().flat_map(move |v| {
-        passed += mesh.weights[*v as usize];
+        passed += weight(mesh, *v);
         let mut times = 0;
         while next < passed {
             next += step;
@@ -138,7 +150,8 @@ impl Solver<'_> {
             sign,
         };
         let neighbourhoods = self.neighbourhoods.take();
-        let neighbourhoods = neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh));
+        let neighbourhoods =
+            neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh, self.visibility));
         let arrived = self.arrivals_near(beam, &neighbourhoods);
         self.light.take_all(&self.mesh, sign);
         for (irradiance, vertices) in arrived.iter().zip(neighbourhoods.iter()) {

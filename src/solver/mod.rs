@@ -21,6 +21,7 @@ mod refine;
 mod regather;
 mod room;
 mod run;
+mod sheets;
 mod shoot;
 mod shot;
 mod source;

@@ -1,7 +1,7 @@
 //! All patches shooting at once, as clusters: what a scene of many small polygons is solved with, tried where the answer is known.
 
 use super::common::reference::{Deviation, table};
-use super::common::shapes::{add_cuboid, add_grey, add_quad, add_triangle, empty};
+use super::common::shapes::{add_cuboid, add_grey, add_level, add_quad, add_triangle, empty};
 use super::resume::{in_sessions, settings};
 use super::{bits, bundled, draft, engines, solved, solved_by};
 use glam::DVec3;
@@ -136,6 +136,32 @@ fn the_inside_of_a_thin_box_stays_dark() {
         }
     }
     assert!(outside > 0.0);
+}
+
+/// A room with a ceiling let in: its walls go on above, in the dark.
+#[test]
+fn no_light_comes_past_a_ceiling_along_the_walls() {
+    let mut scene = empty();
+    let grey = add_grey(&mut scene, 0.8, 0.0);
+    let (low, high, height) = (DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5), 0.91);
+    add_cuboid(&mut scene, grey, [low, high], true);
+    let level = [[low.x, low.z], [high.x, high.z]];
+    add_level(&mut scene, grey, level, height, false);
+    scene.surfaces.last_mut().expect("the ceiling").sides = Sides::Both;
+    let light = add_grey(&mut scene, 0.0, 1.0);
+    let middle = 0.5 * (low + high);
+    let [near, far] = [-0.1, 0.1].map(|d| [middle.x + d, middle.z + d]);
+    add_level(&mut scene, light, [near, far], 0.6, false);
+    let solution = solved(&scene, clustered(draft()));
+    let mesh = &solution.mesh;
+    let (mut above, mut below): (f32, f32) = (0.0, 0.0);
+    for (number, irradiance) in (0..).zip(&solution.light.irradiance) {
+        let (point, normal) = mesh.receiver(number);
+        let is_above = mesh.frame.leave(point + 1e-6 * normal).y > height;
+        let most = if is_above { &mut above } else { &mut below };
+        *most = most.max(irradiance.x);
+    }
+    assert!(above == 0.0 && below > 0.03, "{above} above, {below} below");
 }
 
 /// Irradiance at the vertices of patches that are no floor and no light, by the bits of the place and the side.

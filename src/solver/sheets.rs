@@ -1,0 +1,90 @@
+//! Patches that make one sheet: they share sides, face the same way, and nothing stands on the side between them.
+//!
+//! A wall goes on behind the ceiling that meets it, often as the same surface: what falls on it below says nothing of the cavity above.
+
+use crate::geometry::{Sets, facing};
+use crate::mesh::{Mesh, Patch};
+use crate::visibility::{Fans, Visibility};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// Where two patches look at one another: this part of the way from the side that they share to their centres.
+const NEARNESS: f64 = 0.25;
+
+/// By patch, the first of its own sheet. No patch looks for its neighbour further than `reach` from the side between them.
+pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Vec<u32> {
+    let mut sides: Vec<(SideKey, u32)> = (0..mesh.patches.len() as u32)
+        .into_par_iter()
+        .flat_map_iter(|number| keys(&mesh.patches[number as usize]).map(move |key| (key, number)))
+        .collect();
+    sides.par_sort_unstable();
+    let shared: Vec<Shared> = sides
+        .par_chunk_by(|a, b| a.0 == b.0)
+        .flat_map_iter(|of| {
+            let middle = middle(&of[0].0);
+            of.windows(2)
+                .map(move |pair| Shared(pair[0].1, pair[1].1, middle))
+        })
+        .filter(|shared| nothing_between(mesh, visibility, *shared, reach))
+        .collect();
+    let mut sheets = Sets::new(mesh.patches.len());
+    for Shared(a, b, _) in shared {
+        sheets.join(a, b);
+    }
+    (0..mesh.patches.len() as u32)
+        .map(|patch| sheets.root(patch))
+        .collect()
+}
+
+/// Two patches, and the middle of a side that they share.
+#[derive(Clone, Copy)]
+struct Shared(u32, u32, DVec3);
+
+/// The way a patch faces, and a side of it by the places of its ends, the same from either patch.
+type SideKey = ((usize, bool), [[u64; 3]; 2]);
+
+fn keys(patch: &Patch) -> impl Iterator<Item = SideKey> {
+    let way = (facing(patch.normal), patch.back);
+    let corners = patch.corners();
+    let places = |i: usize| {
+        (corners[i % corners.len()] + 0.0)
+            .to_array()
+            .map(f64::to_bits)
+    };
+    (0..corners.len()).map(move |i| {
+        let mut ends = [places(i), places(i + 1)];
+        ends.sort_unstable();
+        (way, ends)
+    })
+}
+
+fn middle((_, ends): &SideKey) -> DVec3 {
+    let [a, b] = ends.map(|end| DVec3::from_array(end.map(f64::from_bits)));
+    0.5 * (a + b)
+}
+
+/// Whether points a little way in from the middle of the side that two patches share, and as much above, see one another.
+fn nothing_between(mesh: &Mesh, visibility: &dyn Visibility, shared: Shared, reach: f64) -> bool {
+    let Shared(a, b, middle) = shared;
+    let ways = [a, b].map(|number| {
+        let patch = &mesh.patches[number as usize];
+        let corners = patch.corners();
+        let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        (centre - middle, patch.normal)
+    });
+    let lengths = ways.map(|(inwards, _)| NEARNESS * inwards.length());
+    let way = lengths[0].min(lengths[1]).min(reach);
+    let [from, to] =
+        ways.map(|(inwards, normal)| middle + way * (inwards.normalize_or_zero() + normal));
+    see_one_another(visibility, from.as_vec3(), to.as_vec3())
+}
+
+/// Whether nothing is between two points.
+pub(super) fn see_one_another(visibility: &dyn Visibility, a: Vec3, b: Vec3) -> bool {
+    let mut fans = Fans::default();
+    fans.begin(a);
+    fans.push(b);
+    let mut masks = Vec::new();
+    visibility.occluded(&fans, &mut masks);
+    masks == [0]
+}
