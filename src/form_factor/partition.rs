@@ -137,7 +137,6 @@ impl Sampler<'_> {
                     let change = parts.contribution - leaf.contribution;
                     leaf.contribution =
                         (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
-                    leaf.aimed = leaf.contribution;
                 }
             }
             leaves.push(leaf);
@@ -166,7 +165,6 @@ impl Sampler<'_> {
         Leaf {
             cell,
             contribution,
-            aimed: contribution,
             measure,
             area: area as f32,
             cut: sight.cut,

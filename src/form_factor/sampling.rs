@@ -57,8 +57,6 @@ pub(super) struct Leaf {
     pub(super) cell: CellIndex,
     /// Irradiance from the cell if it is seen.
     pub(super) contribution: Spectrum,
-    /// The same with the radiosity where the ray is aimed instead of the cell's mean.
-    pub(super) aimed: Spectrum,
     /// What is compared with the thresholds.
     pub(super) measure: f32,
     /// Area above the horizon.
@@ -142,10 +140,12 @@ impl Sampler<'_> {
             }
         }
         gathers.clear();
+        let leaves = scratch.leaves[..receivers.len()].iter();
         gathers.extend(
-            scratch.leaves[..receivers.len()]
+            receivers
                 .iter()
-                .map(|leaves| sum(leaves)),
+                .zip(leaves)
+                .map(|((_, key), leaves)| sum(source, *key, leaves)),
         );
         rays
     }
@@ -164,7 +164,7 @@ impl Sampler<'_> {
         owners.clear();
         for (i, (receiver, key)) in receivers.iter().enumerate() {
             let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
-            for (n, leaf) in leaves[i][fresh[i]..].iter_mut().enumerate() {
+            for (n, leaf) in leaves[i][fresh[i]..].iter().enumerate() {
                 if n % MAX_FAN == 0 {
                     fans.begin(origin);
                     owners.push((i as u32, (fresh[i] + n) as u32));
@@ -182,13 +182,9 @@ impl Sampler<'_> {
     }
 
     /// Aims the ray of a leaf.
-    fn target(&self, source: &Source, receiver: Receiver, key: u32, leaf: &mut Leaf) -> glam::Vec3 {
-        let [s, t] = jitter(key, leaf.cell).map(|j| 0.05 + 0.9 * j);
+    fn target(&self, source: &Source, receiver: Receiver, key: u32, leaf: &Leaf) -> glam::Vec3 {
+        let [s, t] = place_in(leaf, key);
         let cell = source.cell(leaf.cell);
-        if !leaf.cut && cell.variation > 0.0 {
-            let mean = cell.radiosity.max(Spectrum::splat(f32::MIN_POSITIVE));
-            leaf.aimed = leaf.contribution * (source.radiosity_at(leaf.cell, s, t) / mean);
-        }
         // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
         let point = if leaf.cut {
             receiver.point + point_in_cut(&above_horizon(receiver, cell), s, t)
@@ -199,11 +195,27 @@ impl Sampler<'_> {
     }
 }
 
+/// Where in its cell the ray of a leaf is aimed.
+fn place_in(leaf: &Leaf, key: u32) -> [f64; 2] {
+    jitter(key, leaf.cell).map(|j| 0.05 + 0.9 * j)
+}
+
+/// The contribution of a leaf with the radiosity where its ray is aimed instead of the cell's mean.
+fn aimed(source: &Source, key: u32, leaf: &Leaf) -> Spectrum {
+    let cell = source.cell(leaf.cell);
+    if leaf.cut || cell.variation == 0.0 {
+        return leaf.contribution;
+    }
+    let [s, t] = place_in(leaf, key);
+    let mean = cell.radiosity.max(Spectrum::splat(f32::MIN_POSITIVE));
+    leaf.contribution * (source.radiosity_at(leaf.cell, s, t) / mean)
+}
+
 /// Adds up the leaves of a point.
 ///
 /// Where all rays arrive, the cells' means are exact. Where some do not, what is hidden from the point tends to be what is hidden
 /// from the light, so the mean of a cell times its visibility would lose light; the radiosity where the ray was aimed does not.
-fn sum(leaves: &[Leaf]) -> Gather {
+fn sum(source: &Source, key: u32, leaves: &[Leaf]) -> Gather {
     let all = leaves.iter().all(|leaf| leaf.seen);
     let mut gather = Gather::default();
     let (mut seen, mut area) = (0.0, 0.0);
@@ -211,7 +223,11 @@ fn sum(leaves: &[Leaf]) -> Gather {
         gather.unoccluded += leaf.contribution;
         area += leaf.area;
         if leaf.seen {
-            gather.irradiance += if all { leaf.contribution } else { leaf.aimed };
+            gather.irradiance += if all {
+                leaf.contribution
+            } else {
+                aimed(source, key, leaf)
+            };
             seen += leaf.area;
         }
     }

@@ -98,13 +98,21 @@ impl Mesh {
     /// The fan triangle of a leaf that covers a point of its plane, with barycentric weights; a point a hair outside
     /// gets the nearest triangle's continuation, clamped to it.
     pub fn interpolate(&self, leaf: u32, point: DVec3) -> [Weighted; 3] {
-        let normal = self.patches[self.elements[leaf as usize].patch as usize].normal;
+        let of = &self.elements[leaf as usize];
+        let normal = self.patches[of.patch as usize].normal;
+        let centre = self.position(of.centre);
         let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
+        let mut known = None;
         for triangle in self.fan(leaf) {
-            let [a, b, c] = triangle.map(|v| self.position(v));
-            let area = (b - a).cross(c - a).dot(normal);
-            let beta = (point - a).cross(c - a).dot(normal) / area;
-            let gamma = (b - a).cross(point - a).dot(normal) / area;
+            let place = |v: u32| match known {
+                Some((vertex, place)) if vertex == v => place,
+                _ => self.position(v),
+            };
+            let [b, c] = [place(triangle[1]), self.position(triangle[2])];
+            known = Some((triangle[2], c));
+            let area = (b - centre).cross(c - centre).dot(normal);
+            let beta = (point - centre).cross(c - centre).dot(normal) / area;
+            let gamma = (b - centre).cross(point - centre).dot(normal) / area;
             let alpha = 1.0 - beta - gamma;
             let inside = alpha.min(beta).min(gamma);
             if inside > best.1 {
@@ -112,6 +120,9 @@ impl Mesh {
                 let sum: f64 = clamped.iter().sum();
                 let weight = |i: usize| (triangle[i], (clamped[i] / sum) as f32);
                 best = ([weight(0), weight(1), weight(2)], inside);
+            }
+            if inside >= 0.0 {
+                break;
             }
         }
         best.0

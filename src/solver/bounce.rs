@@ -24,8 +24,11 @@ const LARGE: f64 = 1.0 / 16.0;
 /// Pools that a small part of a cube is tried with.
 const MOST_POOLS: usize = 4;
 
-/// Vertices that a neighbourhood receives at.
+/// Vertices that a neighbourhood receives at …
 const SAMPLES: usize = 2;
+
+/// … unless a wave carries no more than this fraction of the emitted power: then one is enough.
+const WEAK: f64 = 0.05;
 
 /// The vertices that light falls on, by neighbourhood.
 #[derive(Debug, Clone)]
@@ -121,9 +124,9 @@ fn weight(mesh: &Mesh, vertex: u32) -> f64 {
     mesh.weights[vertex as usize].max(f64::MIN_POSITIVE)
 }
 
-/// A few vertices, drawn in proportion to the area that each stands for.
-fn drawn(mesh: &Mesh, of: &[u32], seed: u32) -> impl Iterator<Item = u32> {
-    let count = of.len().min(SAMPLES);
+/// No more than `samples` vertices, drawn in proportion to the area that each stands for.
+fn drawn(mesh: &Mesh, of: &[u32], seed: u32, samples: usize) -> impl Iterator<Item = u32> {
+    let count = of.len().min(samples);
     let area: f64 = of.iter().map(|v| weight(mesh, *v)).sum();
     let step = area / count as f64;
     let mut next = jitter(of[0], seed)[0] * step;
@@ -152,7 +155,8 @@ impl Solver<'_> {
         let neighbourhoods = self.neighbourhoods.take();
         let neighbourhoods =
             neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh, self.visibility));
-        let arrived = self.arrivals_near(beam, &neighbourhoods);
+        let samples = if power > WEAK { SAMPLES } else { 1 };
+        let arrived = self.arrivals_near(beam, &neighbourhoods, samples);
         self.light.take_all(&self.mesh, sign);
         for (irradiance, vertices) in arrived.iter().zip(neighbourhoods.iter()) {
             for vertex in vertices {
@@ -170,12 +174,17 @@ impl Solver<'_> {
     }
 
     /// The mean of what arrives in each neighbourhood.
-    fn arrivals_near(&mut self, beam: Beam, near: &Neighbourhoods) -> Vec<Spectrum> {
+    fn arrivals_near(
+        &mut self,
+        beam: Beam,
+        near: &Neighbourhoods,
+        samples: usize,
+    ) -> Vec<Spectrum> {
         let seed = self.course.shots as u32;
         let mut receivers = Vec::new();
         let mut ends = Vec::new();
         for vertices in near.iter() {
-            let drawn = drawn(&self.mesh, vertices, seed);
+            let drawn = drawn(&self.mesh, vertices, seed, samples);
             receivers.extend(drawn.map(|v| receiver_at(&self.mesh, &self.light, v)));
             ends.push(receivers.len());
         }

@@ -150,13 +150,13 @@ impl Preset {
         match self {
             Preset::Draft => Options {
                 epsilon_d: 0.50,
-                epsilon_r: 0.08,
+                epsilon_r: 0.04,
                 local_share: 0.5,
                 visibility_significance: 1.0,
                 limits: MeshLimits {
                     initial_size: 0.25,
-                    max_depth: 7,
-                    min_size: 0.016,
+                    max_depth: 8,
+                    min_size: 0.01,
                 },
                 meshing_power: 0.004,
                 epsilon_fd: 0.008,

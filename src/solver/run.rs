@@ -39,6 +39,8 @@ pub struct Solver<'a> {
     /// Area of one square of the frame's unit, m².
     pub(super) square_metres: f64,
     pub(super) reference: f64,
+    /// What was unshot when that was last counted, for who watches.
+    unshot: Option<Power>,
     /// What the solve took before it was taken up again.
     spent: Duration,
     started: Instant,
@@ -99,6 +101,7 @@ impl<'a> Solver<'a> {
             course,
             visibility,
             options,
+            unshot: None,
             spent,
             started: Instant::now(),
             laps: Laps::new(),
@@ -226,9 +229,13 @@ impl<'a> Solver<'a> {
             .sum()
     }
 
-    fn progress(&self) -> Progress {
+    fn progress(&mut self) -> Progress {
+        // Until a wave, or all light, has arrived everywhere, the light is what it was.
+        let stays = matches!(self.course.stage, Stage::Waving(_) | Stage::Gathering(_));
+        let known = self.unshot.filter(|_| stays);
+        let unshot = known.unwrap_or_else(|| self.unshot_powers().iter().sum());
+        self.unshot = Some(unshot);
         let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
-        let unshot: Power = self.unshot_powers().iter().sum();
         Progress {
             phase: self.course.phase(&self.mesh),
             shots: self.course.shots,

@@ -97,7 +97,7 @@ fn assert_uniform(engine: EngineChoice, preset: Preset, bounds: [f64; 2]) {
 #[test]
 fn draft() {
     for engine in engines() {
-        assert_uniform(engine, Preset::Draft, [0.005, 0.012]);
+        assert_uniform(engine, Preset::Draft, [0.005, 0.014]);
     }
 }
 
