@@ -63,7 +63,7 @@ impl Neighbourhoods {
                 let parts = cube.chunk_by(|a, b| a.0 == b.0);
                 let parts = parts.map(|part| part.iter().map(|(_, v)| *v).collect());
                 let area = |of: &[u32]| of.iter().map(|v| weight(mesh, *v)).sum::<f64>();
-                let is_large = |of: &Vec<u32>| area(of) >= LARGE * side * side;
+                let is_large = |of: &Vec<u32>| area(of) >= little(mesh);
                 let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
                 large.extend(pooled(small, sees));
                 large
@@ -120,14 +120,23 @@ fn above(mesh: &Mesh, vertex: u32, side: f64) -> Vec3 {
     (point + normal * (side / 16.0)).as_vec3()
 }
 
+/// The area below which parts of a cube are pooled.
+fn little(mesh: &Mesh) -> f64 {
+    LARGE * (SIZE * mesh.frame.extent()).powi(2)
+}
+
 fn weight(mesh: &Mesh, vertex: u32) -> f64 {
     mesh.weights[vertex as usize].max(f64::MIN_POSITIVE)
 }
 
-/// No more than `samples` vertices, drawn in proportion to the area that each stands for.
+/// No more than `samples` vertices, drawn in proportion to the area that each stands for; one if together they stand for little.
 fn drawn(mesh: &Mesh, of: &[u32], seed: u32, samples: usize) -> impl Iterator<Item = u32> {
-    let count = of.len().min(samples);
     let area: f64 = of.iter().map(|v| weight(mesh, *v)).sum();
+    let count = if area < little(mesh) {
+        1
+    } else {
+        of.len().min(samples)
+    };
     let step = area / count as f64;
     let mut next = jitter(of[0], seed)[0] * step;
     let mut passed = 0.0;
