@@ -8,7 +8,7 @@ use glam::DVec3;
 pub type Weighted = (u32, f32);
 
 impl Mesh {
-    /// The triangles of a leaf's fan: its centre, then two vertices that follow one another on its boundary.
+    /// The triangles of a leaf's fan: its centre, then two vertices that follow one another on its boundary, from the first corner on.
     pub fn fan(&self, element: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
         let of = self.elements[element as usize];
         let count = of.corners().len();
@@ -101,15 +101,11 @@ impl Mesh {
         let of = &self.elements[leaf as usize];
         let normal = self.patches[of.patch as usize].normal;
         let centre = self.position(of.centre);
+        let mut next = self.position(of.corners[0]);
         let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
-        let mut known = None;
         for triangle in self.fan(leaf) {
-            let place = |v: u32| match known {
-                Some((vertex, place)) if vertex == v => place,
-                _ => self.position(v),
-            };
-            let [b, c] = [place(triangle[1]), self.position(triangle[2])];
-            known = Some((triangle[2], c));
+            let (b, c) = (next, self.position(triangle[2]));
+            next = c;
             let area = (b - centre).cross(c - centre).dot(normal);
             let beta = (point - centre).cross(c - centre).dot(normal) / area;
             let gamma = (b - centre).cross(point - centre).dot(normal) / area;

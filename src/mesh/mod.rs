@@ -22,7 +22,7 @@ pub use build::MeshLimits;
 pub use contact::{Piece, Pieces, pieces as split_at_contacts};
 pub use element::{Element, NONE};
 pub use lattice::{Lattice, UNIT};
-pub use patch::Patch;
+pub use patch::{Patch, SideKey};
 
 use crate::geometry::Frame;
 use glam::DVec3;

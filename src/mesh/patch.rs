@@ -5,6 +5,9 @@ use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
+/// See [`Patch::side_key`].
+pub type SideKey = [[u64; 3]; 2];
+
 /// A planar convex polygon that shoots, and carries elements that receive.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Patch {
@@ -80,6 +83,16 @@ impl Patch {
     /// Its three or four corners.
     pub fn corners(&self) -> &[DVec3] {
         &self.corners[..usize::from(self.corner_count)]
+    }
+
+    /// A side by the bits of its ends in order, the same from every patch that has it; and whether the second corner is its first end.
+    pub fn side_key(&self, side: usize) -> (SideKey, bool) {
+        let corners = self.corners();
+        // No zero but the positive one: both are the same place.
+        let bits = |corner: DVec3| (corner + 0.0).to_array().map(f64::to_bits);
+        let [a, b] = [side, (side + 1) % corners.len()].map(|i| bits(corners[i]));
+        let turned = a > b;
+        (if turned { [b, a] } else { [a, b] }, turned)
     }
 
     /// Whether it has three corners.

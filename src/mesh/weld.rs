@@ -5,7 +5,7 @@
 //! it that belong together, with the mean of their normals by angle. Small patches receive at their corners only. So curved
 //! surfaces have no facets, and light is asked for once where it used to be asked for by each patch.
 
-use super::{Lattice, Mesh, NONE, Patch, UNIT};
+use super::{Lattice, Mesh, NONE, Patch, SideKey, UNIT};
 use crate::geometry::Sets;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -31,8 +31,8 @@ pub(super) struct Weld {
     followed: Vec<u32>,
 }
 
-/// A side of a patch: the bits of its ends in order, the patch, its vertices there.
-type Side = ([u64; 6], u32, u32, u32);
+/// A side of a patch, the patch, its vertices at the ends.
+type Side = (SideKey, u32, u32, u32);
 
 impl Mesh {
     /// Welds what makes one surface, or takes it apart.
@@ -138,16 +138,15 @@ impl Mesh {
         shared.flat_map(|sides| self.ends(sides)).collect()
     }
 
-    /// The sides of a patch by the bits of their ends in order, with the vertices there.
+    /// The sides of a patch, with the vertices at their ends.
     fn sides_of(&self, number: u32, corners: &[u32; 4]) -> impl Iterator<Item = Side> {
         let patch = &self.patches[number as usize];
         let count = patch.corners().len();
         (0..count).map(move |side| {
-            let next = (side + 1) % count;
-            let [p, q] = [side, next].map(|i| patch.corners()[i].to_array().map(f64::to_bits));
-            let [a, b] = [corners[side], corners[next]];
-            let (p, q, a, b) = if p <= q { (p, q, a, b) } else { (q, p, b, a) };
-            ([p[0], p[1], p[2], q[0], q[1], q[2]], number, a, b)
+            let (key, turned) = patch.side_key(side);
+            let [a, b] = [corners[side], corners[(side + 1) % count]];
+            let (a, b) = if turned { (b, a) } else { (a, b) };
+            (key, number, a, b)
         })
     }
 

@@ -1,7 +1,8 @@
 //! Reflected light on its way: between the direct light and the last gathering it arrives at *neighbourhoods*.
 //!
 //! What is reflected varies slowly, and the gathering at the end asks for it anew at every vertex. So until then the vertices of
-//! a small cube of space whose patches hang together and face the same way receive as one: the mean of a few of them, other ones in each wave.
+//! a small cube of space whose patches face the same way, and make one sheet or see one another, receive as one: the mean of a few of them,
+//! other ones in each wave.
 
 use super::light::Sign;
 use super::run::Solver;
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 /// Slices of a cube.
 const SLICES: f64 = 4.0;
 
-/// Patches that hang together are received for apart from others nearby if they have this part of the area of a side of a cube.
+/// The patches of a sheet are received for apart from others nearby if they have this part of the area of a side of a cube.
 const LARGE: f64 = 1.0 / 16.0;
 
 /// Pools that a small part of a cube is tried with.
@@ -40,8 +41,7 @@ pub(super) struct Neighbourhoods {
 
 impl Neighbourhoods {
     pub fn new(mesh: &Mesh, visibility: &dyn Visibility) -> Self {
-        // As long as tiles.
-        let side = SIZE * mesh.frame.extent();
+        let side = side(mesh);
         let sheets = sheets(mesh, visibility, side / SLICES);
         let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
         let mut keyed: Vec<((u64, u64, u32), u32)> = (0..mesh.vertices.len() as u32)
@@ -54,7 +54,7 @@ impl Neighbourhoods {
             .collect();
         keyed.par_sort_unstable();
         let sees = |a: u32, b: u32| {
-            let [a, b] = [a, b].map(|v| above(mesh, v, side));
+            let [a, b] = [a, b].map(|v| above(mesh, v));
             see_one_another(visibility, a, b)
         };
         let cubes: Vec<Vec<Vec<u32>>> = keyed
@@ -62,8 +62,7 @@ impl Neighbourhoods {
             .map(|cube| {
                 let parts = cube.chunk_by(|a, b| a.0 == b.0);
                 let parts = parts.map(|part| part.iter().map(|(_, v)| *v).collect());
-                let area = |of: &[u32]| of.iter().map(|v| weight(mesh, *v)).sum::<f64>();
-                let is_large = |of: &Vec<u32>| area(of) >= little(mesh);
+                let is_large = |of: &Vec<u32>| !is_little(mesh, area(mesh, of));
                 let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
                 large.extend(pooled(small, sees));
                 large
@@ -114,25 +113,36 @@ fn pooled(parts: Vec<Vec<u32>>, sees: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>
     pools
 }
 
-/// A point above a vertex, for looking around in a cube with sides of that length.
-fn above(mesh: &Mesh, vertex: u32, side: f64) -> Vec3 {
+/// A point above a vertex, for looking around in a cube.
+fn above(mesh: &Mesh, vertex: u32) -> Vec3 {
     let (point, normal) = mesh.receiver(vertex);
-    (point + normal * (side / 16.0)).as_vec3()
+    (point + normal * (side(mesh) / 16.0)).as_vec3()
 }
 
-/// The area below which parts of a cube are pooled.
-fn little(mesh: &Mesh) -> f64 {
-    LARGE * (SIZE * mesh.frame.extent()).powi(2)
+/// The side of a cube: as long as tiles.
+fn side(mesh: &Mesh) -> f64 {
+    SIZE * mesh.frame.extent()
 }
 
+/// Whether a part of a cube is so small that it is pooled with others.
+fn is_little(mesh: &Mesh, area: f64) -> bool {
+    area < LARGE * side(mesh).powi(2)
+}
+
+/// What vertices stand for together.
+fn area(mesh: &Mesh, of: &[u32]) -> f64 {
+    of.iter().map(|v| weight(mesh, *v)).sum()
+}
+
+/// What a vertex stands for: next to nothing where it has no area.
 fn weight(mesh: &Mesh, vertex: u32) -> f64 {
     mesh.weights[vertex as usize].max(f64::MIN_POSITIVE)
 }
 
 /// No more than `samples` vertices, drawn in proportion to the area that each stands for; one if together they stand for little.
 fn drawn(mesh: &Mesh, of: &[u32], seed: u32, samples: usize) -> impl Iterator<Item = u32> {
-    let area: f64 = of.iter().map(|v| weight(mesh, *v)).sum();
-    let count = if area < little(mesh) {
+    let area = area(mesh, of);
+    let count = if is_little(mesh, area) {
         1
     } else {
         of.len().min(samples)

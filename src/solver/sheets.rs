@@ -3,7 +3,7 @@
 //! A wall goes on behind the ceiling that meets it, often as the same surface: what falls on it below says nothing of the cavity above.
 
 use crate::geometry::{Sets, facing};
-use crate::mesh::{Mesh, Patch};
+use crate::mesh::{Mesh, Patch, SideKey};
 use crate::visibility::{Fans, Visibility};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -13,15 +13,17 @@ const NEARNESS: f64 = 0.25;
 
 /// By patch, the first of its own sheet. No patch looks for its neighbour further than `reach` from the side between them.
 pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Vec<u32> {
-    let mut sides: Vec<(SideKey, u32)> = (0..mesh.patches.len() as u32)
+    let mut by_side: Vec<(Facing, u32)> = (0..mesh.patches.len() as u32)
         .into_par_iter()
-        .flat_map_iter(|number| keys(&mesh.patches[number as usize]).map(move |key| (key, number)))
+        .flat_map_iter(|number| {
+            sides(&mesh.patches[number as usize]).map(move |side| (side, number))
+        })
         .collect();
-    sides.par_sort_unstable();
-    let shared: Vec<Shared> = sides
+    by_side.par_sort_unstable();
+    let shared: Vec<Shared> = by_side
         .par_chunk_by(|a, b| a.0 == b.0)
         .flat_map_iter(|of| {
-            let middle = middle(&of[0].0);
+            let middle = middle(of[0].0.1);
             of.windows(2)
                 .map(move |pair| Shared(pair[0].1, pair[1].1, middle))
         })
@@ -40,26 +42,17 @@ pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Ve
 #[derive(Clone, Copy)]
 struct Shared(u32, u32, DVec3);
 
-/// The way a patch faces, and a side of it by the places of its ends, the same from either patch.
-type SideKey = ((usize, bool), [[u64; 3]; 2]);
+/// The way that a patch faces, fronts apart from backs, and one of its sides.
+type Facing = ((usize, bool), SideKey);
 
-fn keys(patch: &Patch) -> impl Iterator<Item = SideKey> {
+/// The sides of a patch, by the way that it faces.
+fn sides(patch: &Patch) -> impl Iterator<Item = Facing> {
     let way = (facing(patch.normal), patch.back);
-    let corners = patch.corners();
-    let places = |i: usize| {
-        (corners[i % corners.len()] + 0.0)
-            .to_array()
-            .map(f64::to_bits)
-    };
-    (0..corners.len()).map(move |i| {
-        let mut ends = [places(i), places(i + 1)];
-        ends.sort_unstable();
-        (way, ends)
-    })
+    (0..patch.corners().len()).map(move |side| (way, patch.side_key(side).0))
 }
 
-fn middle((_, ends): &SideKey) -> DVec3 {
-    let [a, b] = ends.map(|end| DVec3::from_array(end.map(f64::from_bits)));
+fn middle(side: SideKey) -> DVec3 {
+    let [a, b] = side.map(|end| DVec3::from_array(end.map(f64::from_bits)));
     0.5 * (a + b)
 }
 
