@@ -35,6 +35,20 @@ impl Element {
         }
     }
 
+    /// Its corners, then its centre.
+    pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
+        self.corners().iter().copied().chain([self.centre])
+    }
+
+    /// Its four children; none for a leaf.
+    pub fn parts(&self) -> std::ops::Range<u32> {
+        if self.is_leaf() {
+            0..0
+        } else {
+            self.children..self.children + 4
+        }
+    }
+
     /// Its sides: number, first vertex, second vertex.
     pub fn sides(&self) -> impl Iterator<Item = (usize, u32, u32)> + '_ {
         let corners = self.corners();

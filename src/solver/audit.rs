@@ -131,14 +131,15 @@ impl Solver<'_> {
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
         let levels = self.options.source_levels();
-        let ones = vec![Spectrum::ONE; 1 << (2 * levels)];
+        // As bright as thresholds expect: what sampling costs does not depend on the unit of light.
+        let even = vec![Spectrum::splat(self.reference as f32); 1 << (2 * levels)];
         let mut gathered = vec![Power::ZERO; receivers.len()];
         let mut factors = vec![0.0; receivers.len()];
         for (patch, of) in self.mesh.patches.iter().enumerate() {
-            let unit = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &ones));
-            let seen = evaluate(plain, &unit, receivers).0;
+            let bright = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &even));
+            let seen = evaluate(plain, &bright, receivers).0;
             for (factor, gather) in factors.iter_mut().zip(seen) {
-                *factor += f64::from(gather.irradiance.x);
+                *factor += f64::from(gather.irradiance.x) / self.reference;
             }
             if whole.unshot_power(&self.mesh, patch, Sign::Positive) != Power::ZERO {
                 let shooter = (patch, Sign::Positive);
@@ -162,12 +163,15 @@ impl Solver<'_> {
         let mut shooter = self.tiling().radiating(&self.mesh, whole);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
-            let ones = vec![Spectrum::ONE; tiling.clusters.tiles().len()];
-            tiling.clusters.radiate(ones, 0);
+            let even = Spectrum::splat(self.reference as f32);
+            let count = tiling.clusters.tiles().len();
+            tiling.clusters.radiate(vec![even; count], 0);
         }
         let factors = evaluate(plain, &shooter, receivers).0;
         let gathered = gathered.iter().map(|g| g.irradiance.as_dvec3());
-        let factors = factors.iter().map(|g| f64::from(g.irradiance.x));
+        let factors = factors
+            .iter()
+            .map(|g| f64::from(g.irradiance.x) / self.reference);
         (gathered.collect(), factors.collect())
     }
 }

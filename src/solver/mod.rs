@@ -7,6 +7,7 @@ mod audit;
 mod bounce;
 mod burial;
 mod course;
+mod descent;
 mod error;
 mod escape;
 mod feelers;

@@ -63,7 +63,7 @@ impl Solver<'_> {
             shooter: &shooter,
             sign: Sign::Positive,
         };
-        let arrived = self.arrivals(beam, &reached);
+        let arrived = self.arrivals(beam, patch, &reached);
         let mut received = Power::ZERO;
         for (vertex, gather) in arrived.iter().enumerate() {
             into.irradiance[vertex] += gather.irradiance;

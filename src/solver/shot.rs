@@ -1,12 +1,13 @@
 //! One shot: it arrives at the vertices, the mesh is refined for it pass by pass, what it loses is measured.
 
 use super::course::{ALL, Shot, Stage};
+use super::descent::Descent;
 use super::escape::{Lost, Part, draw, escaped};
 use super::feelers::feelers;
 use super::light::Sign;
 use super::refine::Refinement;
 use super::run::Solver;
-use super::shoot::{Beam, Shooter, faces, shoot_at};
+use super::shoot::{Beam, Shooter, faces};
 use super::source::{cells_of, source_from};
 use crate::form_factor::{Cell, Gather, Sampler, Source};
 use crate::radiometry::Spectrum;
@@ -37,7 +38,7 @@ impl<'a> Solver<'a> {
             sign,
         };
         self.light.take(&self.mesh, shooter, sign);
-        shot.arrived = self.arrivals(beam, &reached);
+        shot.arrived = self.arrivals(beam, shooter, &reached);
         for (vertex, gather) in shot.arrived.iter().enumerate() {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
@@ -157,16 +158,21 @@ impl<'a> Solver<'a> {
         patches.map(|p| faces(p, source, extent)).collect()
     }
 
-    /// What a beam gives to each vertex of the patches that it reaches.
-    pub(super) fn arrivals(&mut self, beam: Beam, reached: &[bool]) -> Vec<Gather> {
-        let patches = self.mesh.patches.iter().zip(reached);
-        let vertices: Vec<u32> = patches
-            .filter(|(_, reached)| **reached)
-            .flat_map(|(patch, _)| patch.vertices.iter().copied())
-            .filter(|v| !self.mesh.buried[*v as usize])
-            .collect();
-        let mut arrived = vec![Gather::default(); self.mesh.vertices.len()];
-        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &vertices, &mut arrived);
+    /// What a beam from a patch gives to each vertex of the patches that it reaches: what an emitter sends is evaluated at all of
+    /// them, anything else as far down as it is rough.
+    pub(super) fn arrivals(&mut self, beam: Beam, shooter: usize, reached: &[bool]) -> Vec<Gather> {
+        let mesh = &self.mesh;
+        let is_reached = |e: &u32| reached[mesh.elements[*e as usize].patch as usize];
+        let elements: Vec<u32> = if mesh.patches[shooter].exitance != Spectrum::ZERO {
+            mesh.leaves().filter(is_reached).collect()
+        } else {
+            let roots = mesh.patches.iter().flat_map(|p| p.roots.clone());
+            roots.filter(is_reached).collect()
+        };
+        let mut descent = Descent::new(mesh, &self.light, beam, &self.options);
+        descent.descend(elements);
+        self.course.rays += descent.rays;
+        let mut arrived = descent.arrived;
         let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
         self.mesh.continue_to_buried(&mut irradiance, 0);
         for (gather, received) in arrived.iter_mut().zip(irradiance) {
@@ -181,7 +187,10 @@ impl<'a> Solver<'a> {
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
         // An emitter emits wherever it is.
         let emits = |patch: u32| self.mesh.patches[patch as usize].exitance != Spectrum::ZERO;
-        let is_open = |patch, point| emits(patch) || self.is_open(patch as usize, point);
+        let is_whole = self.patches_without_buried();
+        let is_open = |patch, point| {
+            is_whole[patch as usize] || emits(patch) || self.is_open(patch as usize, point)
+        };
         let draws = match source {
             Shooter::Patch(source) => {
                 let part = |(cell, power): (&Cell, Spectrum)| {
@@ -199,6 +208,15 @@ impl<'a> Solver<'a> {
         };
         let extent = self.mesh.frame.extent();
         escaped(draws, self.visibility, &self.backing, is_open, extent)
+    }
+
+    /// Of each patch, whether all its vertices are open.
+    fn patches_without_buried(&self) -> Vec<bool> {
+        let mut is_whole = vec![true; self.mesh.patches.len()];
+        for (vertex, is_buried) in self.mesh.vertices.iter().zip(&self.mesh.buried) {
+            is_whole[vertex.patch as usize] &= !is_buried;
+        }
+        is_whole
     }
 
     /// Whether the nearest vertex to a point of a patch is open.

@@ -1,0 +1,122 @@
+//! Down the quadtree: a shot arrives at the vertices of the coarsest elements, and at those of their parts where it turns out to be rough.
+//!
+//! Most elements are small because of the shadows of emitters. What other patches reflect onto them is smooth, and where an
+//! element's own vertices say so, those of its parts get the interpolant of its fan in place of another look at the source.
+
+use super::light::Light;
+use super::options::Options;
+use super::shoot::{Beam, shoot_at};
+use crate::form_factor::Gather;
+use crate::mesh::Mesh;
+
+/// A shot is smooth on an element if at its centre it differs from the mean of the corners by no more than this times ε_r …
+const RESIDUAL: f64 = 0.1;
+
+/// … and its visibility index by no more than this times ε_v between any two of these: both times what the shot gives there …
+const INDEX: f64 = 0.5;
+
+/// … with this part of the scale of all thresholds added, so that what hardly matters is smooth. As tolerances follow what each
+/// shot gives, those of all shots add up to the same part of the whole.
+const FLOOR: f64 = 0.05;
+
+/// One shot on its way down.
+pub(super) struct Descent<'a> {
+    mesh: &'a Mesh,
+    light: &'a Light,
+    beam: Beam<'a>,
+    options: &'a Options,
+    /// What the shot gives to each vertex.
+    pub arrived: Vec<Gather>,
+    is_known: Vec<bool>,
+    pub rays: u64,
+}
+
+impl<'a> Descent<'a> {
+    /// Nothing has arrived yet; nothing will at buried vertices.
+    pub fn new(mesh: &'a Mesh, light: &'a Light, beam: Beam<'a>, options: &'a Options) -> Self {
+        Self {
+            mesh,
+            light,
+            beam,
+            options,
+            arrived: vec![Gather::default(); mesh.vertices.len()],
+            is_known: mesh.buried.clone(),
+            rays: 0,
+        }
+    }
+
+    /// Evaluates the shot at the vertices of `roots`, level by level at those of rough elements' parts, and lets the rest follow.
+    pub fn descend(&mut self, roots: Vec<u32>) {
+        let mut smooth = Vec::new();
+        let mut level = roots;
+        while !level.is_empty() {
+            self.evaluate(&level);
+            let is_split = |e: &u32| !self.mesh.elements[*e as usize].is_leaf();
+            let split = level.into_iter().filter(is_split);
+            let (rough, rest): (Vec<u32>, Vec<u32>) = split.partition(|e| self.is_rough(*e));
+            smooth.extend(rest);
+            let parts = |e: u32| self.mesh.elements[e as usize].parts();
+            level = rough.into_iter().flat_map(parts).collect();
+        }
+        // The finest last: along a side that it shares with a coarser one, its values are the nearer ones.
+        smooth.into_iter().for_each(|element| self.follow(element));
+    }
+
+    /// Evaluates the shot at those vertices of elements that it has not arrived at.
+    fn evaluate(&mut self, elements: &[u32]) {
+        let mut fresh = Vec::new();
+        for element in elements {
+            for vertex in self.mesh.elements[*element as usize].vertices() {
+                if !std::mem::replace(&mut self.is_known[vertex as usize], true) {
+                    fresh.push(vertex);
+                }
+            }
+        }
+        self.rays += shoot_at(self.mesh, self.light, self.beam, &fresh, &mut self.arrived);
+    }
+
+    fn is_rough(&self, element: u32) -> bool {
+        let of = &self.mesh.elements[element as usize];
+        if of.vertices().any(|v| self.mesh.buried[v as usize]) {
+            return true;
+        }
+        let most =
+            |value: &dyn Fn(u32) -> f32| f64::from(of.vertices().map(value).fold(0.0, f32::max));
+        let arrived = |v: u32| &self.arrived[v as usize];
+        let given = most(&|v| arrived(v).irradiance.abs().max_element());
+        let there = most(&|v| self.light.irradiance[v as usize].max_element());
+        let tolerance = given + FLOOR * self.beam.sampler.thresholds.scale.at(there);
+
+        let corners: Vec<Gather> = of.corners().iter().map(|v| *arrived(*v)).collect();
+        let residual = arrived(of.centre).irradiance - Gather::mean(&corners).irradiance;
+        if f64::from(residual.abs().max_element()) > RESIDUAL * self.options.epsilon_r * tolerance {
+            return true;
+        }
+        let indices = || of.vertices().filter_map(|v| arrived(v).visibility);
+        let range = indices().fold(0.0, f32::max) - indices().fold(1.0, f32::min);
+        let hidden = f64::from(range) * most(&|v| arrived(v).unoccluded.max_element());
+        hidden > INDEX * self.options.epsilon_v * tolerance
+    }
+
+    /// Gives the vertices of an element's parts what its fan has there: a corner of a part is a corner of the whole, its centre, or
+    /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's.
+    fn follow(&mut self, element: u32) {
+        let mesh = self.mesh;
+        let whole = &mesh.elements[element as usize];
+        let corners = whole.corners();
+        for ((own, part), i) in corners.iter().zip(whole.parts()).zip(0..) {
+            let part = &mesh.elements[part as usize];
+            let next = [i + 1, i + corners.len() - 1].map(|j| j % corners.len());
+            next.iter()
+                .for_each(|j| self.halve(part.corners[*j], [*own, corners[*j]]));
+            self.halve(part.centre, [*own, whole.centre]);
+        }
+        whole.parts().for_each(|part| self.follow(part));
+    }
+
+    fn halve(&mut self, vertex: u32, ends: [u32; 2]) {
+        if !self.is_known[vertex as usize] {
+            self.arrived[vertex as usize] = Gather::mean(&ends.map(|v| self.arrived[v as usize]));
+        }
+    }
+}
