@@ -1,4 +1,4 @@
-//! Planar convex polygons of a few corners: area, normal, centroid, clipping to a half-space.
+//! Planar convex polygons of a few corners: area, normal, centroid, distance, clipping to a half-space.
 
 use glam::DVec3;
 
@@ -45,6 +45,27 @@ pub fn diameter(corners: &[DVec3]) -> f64 {
         }
     }
     longest.sqrt()
+}
+
+/// Distance of a point from a planar convex polygon, counter-clockwise about its unit normal.
+pub fn distance(point: DVec3, corners: &[DVec3], normal: DVec3) -> f64 {
+    let height = normal.dot(point - corners[0]);
+    let mut aside: f64 = 0.0;
+    for (i, a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        if normal.cross(b - *a).dot(point - *a) < 0.0 {
+            let along = ((point - *a).dot(b - *a) / b.distance_squared(*a)).clamp(0.0, 1.0);
+            let foot = a.lerp(b, along);
+            let beside = point - foot - normal * height;
+            aside = if aside == 0.0 {
+                beside.length()
+            } else {
+                aside.min(beside.length())
+            };
+        }
+    }
+    debug_assert!(vector_area(corners).dot(normal) > 0.0);
+    height.hypot(aside)
 }
 
 /// A convex polygon of at most [`Clipped::MOST`] corners, kept without allocation.

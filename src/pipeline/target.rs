@@ -16,8 +16,11 @@ const STRICTEST: f64 = 2.5;
 /// The loosest.
 const LOOSEST: f64 = -1.0;
 
-/// The nRMS of a plain scene, about, at strictness 0 and how many times less it is at 1: where the first solve starts.
-const USUAL: (f64, f64) = (0.0175, 3.7);
+/// The estimated nRMS of the Cornell box, about, at strictness -1, 0, 1 and 2: where the first solve starts.
+const USUAL: [f64; 4] = [0.034, 0.0112, 0.0052, 0.0017];
+
+/// How many times less it is a step further on.
+const STEP: f64 = 2.2;
 
 /// An error to be reached, in place of thresholds: the scene is solved with those that usually do, then with stricter ones in
 /// proportion to what was missed. The report's `target` says whether it was reached; if not, the solution is the best there was.
@@ -32,7 +35,10 @@ pub struct Target {
 impl Target {
     /// What the report says before the first round.
     pub(super) fn report(&self) -> TargetReport {
-        let strictness = (USUAL.0 / self.n_rms).ln() / USUAL.1.ln();
+        let above = USUAL.iter().filter(|usual| **usual > self.n_rms).count();
+        let step = above.clamp(1, USUAL.len() - 1);
+        let [from, to] = [USUAL[step - 1], USUAL[step]];
+        let strictness = step as f64 - 2.0 + (from / self.n_rms).ln() / (from / to).ln();
         TargetReport {
             n_rms: self.n_rms,
             reached: false,
@@ -59,7 +65,7 @@ impl TargetReport {
             return false;
         }
         // A little more than what is missing, so that one more round is enough.
-        self.strictness += (estimate / self.n_rms).ln() / USUAL.1.ln() * 1.1 + 0.08;
+        self.strictness += (estimate / self.n_rms).ln() / STEP.ln() * 1.1 + 0.08;
         self.strictness = self.strictness.min(STRICTEST);
         self.rounds += 1;
         true

@@ -63,7 +63,7 @@ impl<'a> Prober<'a> {
         for candidate in self.patches.locate_in_envelope_intersecting(envelope) {
             let patch = &mesh.patches[candidate.data as usize];
             let facing = patch.normal.dot(normal);
-            let distance = distance(point, patch.corners(), patch.normal);
+            let distance = polygon::distance(point, patch.corners(), patch.normal);
             if facing > 0.5 && distance <= self.tolerance {
                 // Normals that agree to single precision agree.
                 let rank = ((facing * 1e6).round(), -distance, candidate.data);
@@ -98,25 +98,4 @@ impl<'a> Prober<'a> {
             element,
         }
     }
-}
-
-/// Distance of a point from a planar convex polygon.
-fn distance(point: DVec3, corners: &[DVec3], normal: DVec3) -> f64 {
-    let height = normal.dot(point - corners[0]);
-    let mut aside: f64 = 0.0;
-    for (i, a) in corners.iter().enumerate() {
-        let b = corners[(i + 1) % corners.len()];
-        if normal.cross(b - *a).dot(point - *a) < 0.0 {
-            let along = ((point - *a).dot(b - *a) / b.distance_squared(*a)).clamp(0.0, 1.0);
-            let foot = a.lerp(b, along);
-            let beside = point - foot - normal * height;
-            aside = if aside == 0.0 {
-                beside.length()
-            } else {
-                aside.min(beside.length())
-            };
-        }
-    }
-    debug_assert!(polygon::vector_area(corners).dot(normal) > 0.0);
-    height.hypot(aside)
 }

@@ -5,19 +5,23 @@
 
 use super::light::Light;
 use super::options::Options;
-use super::shoot::{Beam, shoot_at};
+use super::shoot::{Beam, Shooter, shoot_at};
 use crate::form_factor::Gather;
+use crate::geometry::polygon;
 use crate::mesh::Mesh;
 
 /// A shot is smooth on an element if at its centre it differs from the mean of the corners by no more than this times ε_r …
-const RESIDUAL: f64 = 0.1;
+const RESIDUAL: f64 = 0.5;
 
 /// … and its visibility index by no more than this times ε_v between any two of these: both times what the shot gives there …
 const INDEX: f64 = 0.5;
 
 /// … with this part of the scale of all thresholds added, so that what hardly matters is smooth. As tolerances follow what each
 /// shot gives, those of all shots add up to the same part of the whole.
-const FLOOR: f64 = 0.05;
+const FLOOR: f64 = 0.1;
+
+/// It is taken for rough if the source is not this many times its longest side away.
+const NEAR: f64 = 1.0;
 
 /// One shot on its way down.
 pub(super) struct Descent<'a> {
@@ -77,7 +81,7 @@ impl<'a> Descent<'a> {
 
     fn is_rough(&self, element: u32) -> bool {
         let of = &self.mesh.elements[element as usize];
-        if of.vertices().any(|v| self.mesh.buried[v as usize]) {
+        if self.is_near(element) || of.vertices().any(|v| self.mesh.buried[v as usize]) {
             return true;
         }
         let most =
@@ -96,6 +100,18 @@ impl<'a> Descent<'a> {
         let range = indices().fold(0.0, f32::max) - indices().fold(1.0, f32::min);
         let hidden = f64::from(range) * most(&|v| arrived(v).unoccluded.max_element());
         hidden > INDEX * self.options.epsilon_v * tolerance
+    }
+
+    /// Whether the source is so near that five points may miss where most of its light falls.
+    fn is_near(&self, element: u32) -> bool {
+        let Shooter::Patch(source) = self.beam.shooter else {
+            return false;
+        };
+        let centre = self
+            .mesh
+            .position(self.mesh.elements[element as usize].centre);
+        let distance = polygon::distance(centre, source.corners(), source.normal());
+        distance < NEAR * self.mesh.longest_side(element)
     }
 
     /// Gives the vertices of an element's parts what its fan has there: a corner of a part is a corner of the whole, its centre, or

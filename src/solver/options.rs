@@ -149,7 +149,7 @@ impl Preset {
         };
         match self {
             Preset::Draft => Options {
-                epsilon_d: 0.50,
+                epsilon_d: 0.17,
                 epsilon_r: 0.04,
                 local_share: 0.5,
                 visibility_significance: 1.0,
@@ -162,6 +162,7 @@ impl Preset {
                 epsilon_fd: 0.008,
                 epsilon_fe: 0.04,
                 tolerance: 0.006,
+                audit_points: 512,
                 ..standard
             },
             Preset::Standard => standard,
@@ -213,17 +214,21 @@ impl Options {
         serde_json::from_value(all).map_err(|e| e.to_string())
     }
 
-    /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, in geometric steps; less than 0 is looser than draft.
+    /// Options between the presets and beyond: 0 is draft, 1 standard, 2 accurate, -1 the loosest that are worth their time; in
+    /// geometric steps.
     pub fn at(strictness: f64) -> Self {
-        let (low, high, way) = if strictness < 1.0 {
-            (Preset::Draft, Preset::Standard, strictness)
-        } else {
-            (Preset::Standard, Preset::Accurate, strictness - 1.0)
-        };
-        let (low, high) = (low.options(), high.options());
-        let between = |of: fn(&Options) -> f64| of(&low) * (of(&high) / of(&low)).powf(way);
+        let steps = [
+            Self::rough(),
+            Preset::Draft.options(),
+            Preset::Standard.options(),
+            Preset::Accurate.options(),
+        ];
+        let below = (strictness + 1.0).clamp(0.0, 2.0).floor();
+        let way = strictness + 1.0 - below;
+        let [low, high] = [0, 1].map(|i| &steps[below as usize + i]);
+        let between = |of: fn(&Options) -> f64| of(low) * (of(high) / of(low)).powf(way);
         let depth = |of: &Options| f64::from(of.limits.max_depth);
-        let nearer = if way < 0.5 { &low } else { &high };
+        let nearer = if way < 0.5 { low } else { high };
         Options {
             epsilon_d: between(|o| o.epsilon_d),
             epsilon_r: between(|o| o.epsilon_r),
@@ -232,7 +237,7 @@ impl Options {
             local_share: between(|o| o.local_share),
             limits: MeshLimits {
                 initial_size: between(|o| o.limits.initial_size),
-                max_depth: (depth(&low) + (depth(&high) - depth(&low)) * way).round() as u32,
+                max_depth: (depth(low) + (depth(high) - depth(low)) * way).round() as u32,
                 min_size: between(|o| o.limits.min_size),
             },
             meshing_power: between(|o| o.meshing_power),
@@ -241,6 +246,26 @@ impl Options {
             distance_factor: between(|o| o.distance_factor),
             tolerance: between(|o| o.tolerance),
             ..nearer.clone()
+        }
+    }
+
+    /// A step below draft.
+    const fn rough() -> Self {
+        let draft = Preset::Draft.options();
+        Self {
+            epsilon_d: 0.28,
+            epsilon_r: 0.08,
+            limits: MeshLimits {
+                initial_size: 0.35,
+                max_depth: 7,
+                min_size: 0.02,
+            },
+            epsilon_fd: 0.032,
+            epsilon_fe: 0.16,
+            epsilon_area: 1.0 / 256.0,
+            tolerance: 0.008,
+            audit_points: 256,
+            ..draft
         }
     }
 

@@ -1,9 +1,13 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Clusters, Sends};
+use super::{Aim, Clusters, Node, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
+use std::mem::take;
+
+/// Subtrees with more nodes than this are worth a thread.
+const APART: usize = 1 << 11;
 
 impl Clusters {
     /// Takes over the radiosity of each tile, in their order; `seed` draws the points that rays are aimed at.
@@ -17,22 +21,44 @@ impl Clusters {
             sum += f64::from(self.weight(*tile));
         }
         self.sums[self.order.len()] = sum;
-        for number in (0..self.nodes.len()).rev() {
-            let node = self.nodes[number];
-            let (sends, peak) = if node.second == 0 {
-                let tile = self.order[node.first as usize];
-                let peak = self.radiosity[tile as usize].max_element();
-                (self.sent_by(tile), peak)
-            } else {
-                let [a, b] = [number + 1, node.second as usize];
-                let draw = jitter(number as u32, seed)[0] as f32;
-                let peak = self.nodes[a].peak.max(self.nodes[b].peak);
-                (joined(self.sends[a], self.sends[b], draw), peak)
-            };
-            self.nodes[number].strength = sends.weight * sends.colour.max_element();
-            self.nodes[number].peak = peak;
-            self.sends[number] = sends;
+        let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
+        let roots = self.roots.iter().copied();
+        let ends = roots.clone().skip(1).chain([nodes.len() as u32]);
+        for (root, end) in roots.zip(ends) {
+            let tree = root as usize..end as usize;
+            self.send(root, &mut nodes[tree.clone()], &mut sends[tree]);
         }
+        (self.nodes, self.sends) = (nodes, sends);
+    }
+
+    /// Finds what a cluster sends, and all below it: `number` is the first of `nodes`, the others follow.
+    fn send(&self, number: u32, nodes: &mut [Node], sends: &mut [Sends]) {
+        let ([node, below @ ..], [sent, sent_below @ ..]) = (nodes, sends) else {
+            return;
+        };
+        if node.second == 0 {
+            let tile = self.order[node.first as usize];
+            *sent = self.sent_by(tile);
+            node.peak = self.radiosity[tile as usize].max_element();
+        } else {
+            let (first, second) = (number + 1, node.second);
+            let middle = (second - first) as usize;
+            let (left, right) = below.split_at_mut(middle);
+            let (left_sent, right_sent) = sent_below.split_at_mut(middle);
+            if left.len().min(right.len()) > APART {
+                rayon::join(
+                    || self.send(first, left, left_sent),
+                    || self.send(second, right, right_sent),
+                );
+            } else {
+                self.send(first, left, left_sent);
+                self.send(second, right, right_sent);
+            }
+            let draw = jitter(number, self.seed)[0] as f32;
+            *sent = joined(left_sent[0], right_sent[0], draw);
+            node.peak = left[0].peak.max(right[0].peak);
+        }
+        node.strength = sent.weight * sent.colour.max_element();
     }
 
     /// Mean radiosity of the channels.
