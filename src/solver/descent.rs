@@ -136,3 +136,78 @@ impl<'a> Descent<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::solver::light::Sign;
+    use crate::solver::options::Preset;
+    use crate::solver::{Course, Silent, Solver, occluders};
+    use crate::visibility::{EngineChoice, build};
+    use std::path::Path;
+    use std::time::Duration;
+
+    /// What all patches reflect in the box, gathered down the quadtree and at every vertex of a mesh that its emitter has refined.
+    #[test]
+    fn what_follows_is_what_is_there_to_half_of_the_threshold() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box");
+        let scene = Scene::load(&folder).expect("it is there");
+        let options = Preset::Standard.options();
+        let coarse = Mesh::new(&scene, options.limits);
+        let engine = build(EngineChoice::Obvhs, &occluders(&scene, &coarse), 0).expect("it can");
+        let once = Options {
+            max_shots: Some(1),
+            audit_points: 0,
+            ..options.clone()
+        };
+        let lit = Solver::new(&scene, coarse, &*engine, once).run(&mut Silent);
+        let state = (lit.mesh, lit.light, Course::default());
+        let solver = Solver::resume(&scene, state, &*engine, options.clone(), Duration::ZERO);
+        let (mesh, light) = (&solver.mesh, &solver.light);
+        let sampler = solver.sampler();
+        let (mut followed, mut known) = (
+            vec![0.0; mesh.vertices.len()],
+            vec![0.0; mesh.vertices.len()],
+        );
+        let (mut rays_down, mut rays_everywhere) = (0, 0);
+        for patch in 0..mesh.patches.len() {
+            if mesh.patches[patch].exitance.max_element() > 0.0 {
+                continue;
+            }
+            let source = solver.source_of(light, (patch, Sign::Positive), &sampler.thresholds);
+            let shooter = Shooter::Patch(source);
+            let beam = Beam {
+                sampler: &sampler,
+                shooter: &shooter,
+                sign: Sign::Positive,
+            };
+            let mut down = Descent::new(mesh, light, beam, &options);
+            down.descend(mesh.patches.iter().flat_map(|p| p.roots.clone()).collect());
+            let mut everywhere = Descent::new(mesh, light, beam, &options);
+            everywhere.descend(mesh.leaves().collect());
+            for vertex in 0..mesh.vertices.len() {
+                followed[vertex] += f64::from(down.arrived[vertex].irradiance.max_element());
+                known[vertex] += f64::from(everywhere.arrived[vertex].irradiance.max_element());
+            }
+            rays_down += down.rays;
+            rays_everywhere += everywhere.rays;
+        }
+        let squares = |of: &dyn Fn(usize) -> f64| {
+            (0..mesh.vertices.len())
+                .map(|v| mesh.weights[v] * of(v).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        let direct = |v: usize| f64::from(light.irradiance[v].max_element());
+        let difference = squares(&|v| followed[v] - known[v]) / squares(&|v| direct(v) + known[v]);
+        assert!(
+            difference <= RESIDUAL * options.epsilon_r,
+            "off by {difference}"
+        );
+        assert!(
+            difference > 0.0 && 3 * rays_down < 2 * rays_everywhere,
+            "{rays_down} of {rays_everywhere} rays"
+        );
+    }
+}
