@@ -1,5 +1,7 @@
 //! A cell of the quadtree.
 
+use crate::radiometry::Spectrum;
+
 /// No such vertex or element.
 pub const NONE: u32 = u32::MAX;
 
@@ -38,6 +40,13 @@ impl Element {
     /// Its corners, then its centre.
     pub fn vertices(&self) -> impl Iterator<Item = u32> + '_ {
         self.corners().iter().copied().chain([self.centre])
+    }
+
+    /// How far a quantity at its centre is from the mean of that at its corners.
+    pub fn residual(&self, value: impl Fn(u32) -> Spectrum) -> Spectrum {
+        let corners = self.corners();
+        let sum: Spectrum = corners.iter().map(|v| value(*v)).sum();
+        (value(self.centre) - sum / corners.len() as f32).abs()
     }
 
     /// Its four children; none for a leaf.

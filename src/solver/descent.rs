@@ -5,6 +5,7 @@
 
 use super::light::Light;
 use super::options::Options;
+use super::refine::{Range, scale};
 use super::shoot::{Beam, Shooter, shoot_at};
 use crate::form_factor::Gather;
 use crate::geometry::polygon;
@@ -84,22 +85,19 @@ impl<'a> Descent<'a> {
         if self.is_near(element) || of.vertices().any(|v| self.mesh.buried[v as usize]) {
             return true;
         }
-        let most =
-            |value: &dyn Fn(u32) -> f32| f64::from(of.vertices().map(value).fold(0.0, f32::max));
-        let arrived = |v: u32| &self.arrived[v as usize];
-        let given = most(&|v| arrived(v).irradiance.abs().max_element());
-        let there = most(&|v| self.light.irradiance[v as usize].max_element());
-        let tolerance = given + FLOOR * self.beam.sampler.thresholds.scale.at(there);
+        let arrived = || of.vertices().map(|v| &self.arrived[v as usize]);
+        let given = arrived().map(|g| g.irradiance.abs().max_element());
+        let given = f64::from(given.fold(0.0, f32::max));
+        let tolerance = given + FLOOR * scale(self.mesh, self.light, &self.beam, element);
 
-        let corners: Vec<Gather> = of.corners().iter().map(|v| *arrived(*v)).collect();
-        let residual = arrived(of.centre).irradiance - Gather::mean(&corners).irradiance;
-        if f64::from(residual.abs().max_element()) > RESIDUAL * self.options.epsilon_r * tolerance {
+        let residual = of.residual(|v| self.arrived[v as usize].irradiance);
+        if f64::from(residual.max_element()) > RESIDUAL * self.options.epsilon_r * tolerance {
             return true;
         }
-        let indices = || of.vertices().filter_map(|v| arrived(v).visibility);
-        let range = indices().fold(0.0, f32::max) - indices().fold(1.0, f32::min);
-        let hidden = f64::from(range) * most(&|v| arrived(v).unoccluded.max_element());
-        hidden > INDEX * self.options.epsilon_v * tolerance
+        let unoccluded = arrived().map(|g| g.unoccluded.max_element());
+        let unoccluded = f64::from(unoccluded.fold(0.0, f32::max));
+        let indices = Range::of(arrived().map(|g| g.visibility));
+        indices.width() * unoccluded > INDEX * self.options.epsilon_v * tolerance
     }
 
     /// Whether the source is so near that five points may miss where most of its light falls.
@@ -107,9 +105,8 @@ impl<'a> Descent<'a> {
         let Shooter::Patch(source) = self.beam.shooter else {
             return false;
         };
-        let centre = self
-            .mesh
-            .position(self.mesh.elements[element as usize].centre);
+        let centre = self.mesh.elements[element as usize].centre;
+        let centre = self.mesh.position(centre);
         let distance = polygon::distance(centre, source.corners(), source.normal());
         distance < NEAR * self.mesh.longest_side(element)
     }
@@ -122,9 +119,9 @@ impl<'a> Descent<'a> {
         let corners = whole.corners();
         for ((own, part), i) in corners.iter().zip(whole.parts()).zip(0..) {
             let part = &mesh.elements[part as usize];
-            let next = [i + 1, i + corners.len() - 1].map(|j| j % corners.len());
-            next.iter()
-                .for_each(|j| self.halve(part.corners[*j], [*own, corners[*j]]));
+            for j in [i + 1, i + corners.len() - 1].map(|j| j % corners.len()) {
+                self.halve(part.corners[j], [*own, corners[j]]);
+            }
             self.halve(part.centre, [*own, whole.centre]);
         }
         whole.parts().for_each(|part| self.follow(part));

@@ -72,13 +72,7 @@ impl Refinement<'_> {
     /// the element was made (before that the centre was interpolated), so small lights add up.
     fn residual(&self, element: u32) -> bool {
         let of = &self.mesh.elements[element as usize];
-        let corners = of.corners();
-        let mean = corners
-            .iter()
-            .map(|v| self.light.irradiance[*v as usize])
-            .sum::<Spectrum>()
-            / corners.len() as f32;
-        let residual = (self.light.irradiance[of.centre as usize] - mean).abs();
+        let residual = of.residual(|v| self.light.irradiance[v as usize]);
         self.exceeds(element, residual, self.options.epsilon_r)
     }
 
@@ -95,14 +89,8 @@ impl Refinement<'_> {
         f64::from((difference * weight).max_element()) > epsilon * self.scale(element) * growth
     }
 
-    /// The irradiance that relative thresholds are multiples of on an element.
     fn scale(&self, element: u32) -> f64 {
-        let of = &self.mesh.elements[element as usize];
-        let vertices = of.corners().iter().chain([&of.centre]);
-        let local = vertices
-            .map(|v| self.light.irradiance[*v as usize].max_element())
-            .fold(0.0, f32::max);
-        self.beam.sampler.thresholds.scale.at(f64::from(local))
+        scale(self.mesh, self.light, &self.beam, element)
     }
 
     /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
@@ -112,14 +100,9 @@ impl Refinement<'_> {
         for &element in elements {
             let of = &self.mesh.elements[element as usize];
             let threshold = self.options.visibility_significance * self.scale(element);
-            let known = || {
-                of.corners()
-                    .iter()
-                    .chain([&of.centre])
-                    .map(|v| &self.arrived[*v as usize])
-            };
+            let known = || of.vertices().map(|v| &self.arrived[v as usize]);
             if known().any(|g| f64::from(g.unoccluded.max_element()) > threshold) {
-                let range = known().fold(Range::EMPTY, |range, g| range.with(g.visibility));
+                let range = Range::of(known().map(|g| g.visibility));
                 if range.width() >= self.options.epsilon_v {
                     failed.push(element);
                 } else {
@@ -275,9 +258,17 @@ impl Refinement<'_> {
     }
 }
 
+/// The irradiance that relative thresholds are multiples of on an element.
+pub(super) fn scale(mesh: &Mesh, light: &Light, beam: &Beam, element: u32) -> f64 {
+    let vertices = mesh.elements[element as usize].vertices();
+    let local = vertices.map(|v| light.irradiance[v as usize].max_element());
+    let local = local.fold(0.0, f32::max);
+    beam.sampler.thresholds.scale.at(f64::from(local))
+}
+
 /// The range of the visibility indices of an element.
 #[derive(Debug, Clone, Copy)]
-struct Range {
+pub(super) struct Range {
     low: f32,
     high: f32,
 }
@@ -288,6 +279,10 @@ impl Range {
         high: f32::NEG_INFINITY,
     };
 
+    pub fn of(indices: impl Iterator<Item = Option<f32>>) -> Self {
+        indices.fold(Self::EMPTY, Self::with)
+    }
+
     /// A point with nothing of the source above its horizon is left out.
     fn with(self, index: Option<f32>) -> Self {
         index.map_or(self, |v| Range {
@@ -296,7 +291,7 @@ impl Range {
         })
     }
 
-    fn width(self) -> f64 {
+    pub fn width(self) -> f64 {
         f64::from(self.high - self.low).max(0.0)
     }
 }
