@@ -191,7 +191,7 @@ fn check(seed: u64, preset: Preset, worst: &mut [Worst; 3]) -> Result<(), String
     }
 
     let furnace = furnace(&mut rng);
-    let settings = with(EngineChoice::Auto, 0);
+    let settings = with(common::ENGINE, 0);
     let alike = solve(&furnace, &settings, &mut Silent).map_err(|e| e.to_string())?;
     worst[2].take(seed, furnace_error(&alike));
     Ok(())

@@ -17,9 +17,10 @@ mod clocked;
 mod embree;
 mod triangles;
 
+pub use crate::simd::Isa;
 pub use brute_force::BruteForce;
 pub use bvh::Obvhs;
-pub use choice::{EngineChoice, UnknownEngine, VisibilityError, build, build_within};
+pub use choice::{EngineChoice, FEW, UnknownEngine, VisibilityError, build, build_within};
 pub use clocked::Clocked;
 #[cfg(embree)]
 pub use embree::Embree;

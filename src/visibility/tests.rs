@@ -270,11 +270,21 @@ fn choices_have_names() {
 
 #[test]
 fn auto_is_a_fixed_rule() {
-    let expected = if cfg!(embree) { "embree" } else { "obvhs" };
-    assert_eq!(
-        build(EngineChoice::Auto, &square(), 1).unwrap().info().name,
-        expected
-    );
+    let chosen = |count: usize| {
+        let mut triangles = square();
+        triangles.indices = triangles.indices.repeat(count.div_ceil(2));
+        triangles.indices.truncate(count);
+        let engine = build(EngineChoice::Auto, &triangles, 1).unwrap();
+        engine.info().name
+    };
+    let slow = if cfg!(embree) { "embree" } else { "obvhs" };
+    let quick = if Isa::widest() == Isa::Portable {
+        slow
+    } else {
+        "obvhs"
+    };
+    assert_eq!([2, FEW].map(chosen), [quick; 2]);
+    assert_eq!([FEW + 1, 2 * FEW].map(chosen), [slow; 2]);
 }
 
 #[cfg(not(embree))]

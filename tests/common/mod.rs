@@ -6,7 +6,16 @@ pub mod reference;
 pub mod shapes;
 
 use radiosity::solver::Preset;
+use radiosity::visibility::EngineChoice;
 use std::path::{Path, PathBuf};
+
+/// The engine of tests about something else: Embree if it was built in, so that both have gone through them all after a build with it
+/// and one without.
+pub const ENGINE: EngineChoice = if cfg!(embree) {
+    EngineChoice::Embree
+} else {
+    EngineChoice::Obvhs
+};
 
 /// The folder of a scene of the project.
 pub fn scene_folder(name: &str) -> PathBuf {

@@ -1,5 +1,6 @@
 //! Obstructed pairs against independent quadrature: millions of segments, with nothing of the product in between.
 
+use crate::common::ENGINE;
 use crate::common::shapes::rectangle;
 use crate::setup::{
     assert_closed, close, hanging_block, matrix, matrix_with, portable, quads, standing_block,
@@ -136,11 +137,7 @@ fn a_window_and_its_pane_add_up() {
 #[test]
 fn a_room_with_a_block_on_its_floor_is_closed_whatever_the_engine() {
     let scene = standing_block();
-    let engines = [
-        EngineChoice::Auto,
-        EngineChoice::Obvhs,
-        EngineChoice::BruteForce,
-    ];
+    let engines = [ENGINE, EngineChoice::Obvhs, EngineChoice::BruteForce];
     let matrices = engines.map(|engine| {
         matrix_with(
             &scene,
@@ -313,11 +310,7 @@ const ENGINES_DIFFER: f64 = 1e-3;
 fn where_rays_are_traced_the_engines_agree_pair_by_pair() {
     let scene = past_a_blind(4);
     // The fastest that is built in, which is Embree where it is installed, then the others.
-    let engines = [
-        EngineChoice::Auto,
-        EngineChoice::Obvhs,
-        EngineChoice::BruteForce,
-    ];
+    let engines = [ENGINE, EngineChoice::Obvhs, EngineChoice::BruteForce];
     let matrices = engines.map(|engine| {
         let options = Options {
             engine,

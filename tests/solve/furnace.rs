@@ -3,6 +3,7 @@
 //! Whatever the shape, that holds at every point; so errors of form factors, of visibility where walls meet, of
 //! interpolation and of selection all show, and are not excused by a bad reference.
 
+use super::common::ENGINE;
 use super::common::shapes::{add_cuboid, add_grey, add_level, add_quad, empty};
 use super::{engines, solved_by};
 use glam::DVec3;
@@ -110,5 +111,5 @@ fn standard() {
 
 #[test]
 fn accurate() {
-    assert_uniform(EngineChoice::Auto, Preset::Accurate, [0.0003, 0.004]);
+    assert_uniform(ENGINE, Preset::Accurate, [0.0003, 0.004]);
 }

@@ -20,7 +20,7 @@ mod stopping;
 mod threads;
 mod variants;
 
-use common::scene_folder;
+use common::{ENGINE, scene_folder};
 use radiosity::scene::Scene;
 use radiosity::solution::{Seconds, Solution};
 use radiosity::solver::{Options, Preset, Silent};
@@ -59,9 +59,9 @@ fn by_preset(name: &'static str, preset: Preset) -> Arc<Solution> {
     Arc::clone(solution)
 }
 
-/// Solves with the given options, on the engine and threads that the machine gives.
+/// Solves with the given options on [`ENGINE`], with the threads that the machine gives.
 fn solved(scene: &Scene, options: Options) -> Solution {
-    solved_by(scene, options, EngineChoice::Auto, 0)
+    solved_by(scene, options, ENGINE, 0)
 }
 
 fn solved_by(scene: &Scene, options: Options, engine: EngineChoice, threads: usize) -> Solution {

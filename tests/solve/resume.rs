@@ -1,5 +1,6 @@
 //! A solve that is left and taken up again: the same bits, no work twice, other emitters.
 
+use super::common::ENGINE;
 use super::common::reference::{Deviation, Sample, table};
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
@@ -98,7 +99,7 @@ fn a_target_in_sessions_is_reached_by_the_same_rounds() {
 #[test]
 fn the_ledger_closes_wherever_a_solve_is_left() {
     let scene = bundled("cornell-box");
-    let mut run = Run::new(scene, settings(draft(), EngineChoice::Auto, 0)).expect("can be solved");
+    let mut run = Run::new(scene, settings(draft(), ENGINE, 0)).expect("can be solved");
     let mut within_a_shot = 0;
     let mut shots = 0;
     while run.go(&mut Batches(3)).expect("can be solved") == StopReason::Interrupted {
@@ -144,8 +145,7 @@ fn a_finished_solve_goes_on_to_a_tighter_tolerance() {
     };
     let first = solved(&scene, loose);
     let shots = first.report.shots;
-    let mut run =
-        Run::resume(first, settings(tight.clone(), EngineChoice::Auto, 0)).expect("can be resumed");
+    let mut run = Run::resume(first, settings(tight.clone(), ENGINE, 0)).expect("can be resumed");
     assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
     let resumed = run.finish();
     let at_once = solved(&scene, tight);
@@ -160,8 +160,7 @@ fn a_finished_solve_goes_on_to_a_tighter_tolerance() {
 fn a_finished_solve_with_the_same_options_has_nothing_to_do() {
     let first = solved(&bundled("geometry"), draft());
     let known = bits(first.clone());
-    let mut run =
-        Run::resume(first, settings(draft(), EngineChoice::Auto, 0)).expect("can be resumed");
+    let mut run = Run::resume(first, settings(draft(), ENGINE, 0)).expect("can be resumed");
     assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
     assert!(bits(run.finish()) == known);
 }
@@ -186,8 +185,7 @@ fn other_emitters_are_shot_as_the_light_that_they_give_more_or_less() {
     for (before, after) in [(0.0, 0.4), (0.4, 0.1), (0.4, 0.0)] {
         let anew = samples(&solved(&with_a_glowing_box(after), standard.clone()));
         let solution = solved(&with_a_glowing_box(before), draft());
-        let mut run = Run::resume(solution, settings(draft(), EngineChoice::Auto, 0))
-            .expect("can be resumed");
+        let mut run = Run::resume(solution, settings(draft(), ENGINE, 0)).expect("can be resumed");
         run.relight(with_a_glowing_box(after))
             .expect("only the light is another");
         assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
@@ -204,11 +202,8 @@ fn other_emitters_are_shot_as_the_light_that_they_give_more_or_less() {
 #[test]
 fn with_all_emitters_off_it_is_dark() {
     let mut scene = bundled("cornell-box");
-    let mut run = Run::resume(
-        solved(&scene, draft()),
-        settings(draft(), EngineChoice::Auto, 0),
-    )
-    .expect("can be resumed");
+    let mut run =
+        Run::resume(solved(&scene, draft()), settings(draft(), ENGINE, 0)).expect("can be resumed");
     for material in &mut scene.materials {
         material.emitted_radiance = Spectrum::ZERO;
     }
@@ -225,7 +220,7 @@ fn another_scene_is_refused() {
     let refusal = |change: &dyn Fn(&mut Scene)| {
         let mut other = scene.clone();
         change(&mut other);
-        let how = settings(draft(), EngineChoice::Auto, 0);
+        let how = settings(draft(), ENGINE, 0);
         let mut run = Run::resume(solution.clone(), how).expect("can be resumed");
         let error = run.relight(other).expect_err("is another scene");
         assert!(matches!(error, SolveError::OtherScene(_)), "{error}");

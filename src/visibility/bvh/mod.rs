@@ -34,10 +34,16 @@ pub struct Obvhs {
 impl Obvhs {
     /// Builds the tree, on one thread: its shape then depends on nothing but the triangles.
     pub fn new(triangles: &Triangles) -> Result<Self, VisibilityError> {
+        Self::with_isa(triangles, Isa::widest())
+    }
+
+    /// The same with an instruction set of one's choice; in place of one that this processor lacks, its widest is taken.
+    pub fn with_isa(triangles: &Triangles, isa: Isa) -> Result<Self, VisibilityError> {
         triangles.validate()?;
+        let is_there = Isa::available().contains(&isa);
         Ok(Self {
             tree: Tree::new(triangles),
-            isa: Isa::widest(),
+            isa: if is_there { isa } else { Isa::widest() },
         })
     }
 }
