@@ -18,15 +18,21 @@ pub(super) struct Continuation {
 }
 
 impl Mesh {
-    /// Continues values from open to buried vertices, nearest first, for vertices from `first` on.
-    pub fn continue_to_buried(&self, values: &mut [Spectrum], first: u32) {
+    /// Continues what `light` is of a value at each vertex from open to buried ones, nearest first, for vertices from `first` on.
+    pub fn continue_to_buried<T>(
+        &self,
+        values: &mut [T],
+        light: impl Fn(&mut T) -> &mut Spectrum,
+        first: u32,
+    ) {
         let mut begin = 0;
         for &(vertex, end) in &self.continuation.steps {
             let sources = &self.continuation.sources[begin as usize..end as usize];
             begin = end;
             if vertex >= first {
-                let sum: Spectrum = sources.iter().map(|v| values[*v as usize]).sum();
-                values[vertex as usize] = sum / sources.len() as f32;
+                let at = |v: &u32| *light(&mut values[*v as usize]);
+                let sum: Spectrum = sources.iter().map(at).sum();
+                *light(&mut values[vertex as usize]) = sum / sources.len() as f32;
             }
         }
     }

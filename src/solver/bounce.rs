@@ -183,8 +183,10 @@ impl Solver<'_> {
                 self.light.unshot[*vertex as usize] += *irradiance;
             }
         }
-        self.mesh.continue_to_buried(&mut self.light.irradiance, 0);
-        self.mesh.continue_to_buried(&mut self.light.unshot, 0);
+        self.mesh
+            .continue_to_buried(&mut self.light.irradiance, |e| e, 0);
+        self.mesh
+            .continue_to_buried(&mut self.light.unshot, |e| e, 0);
         let lost = self.escape_of_all(&shooter, power);
         self.course.lost += lost * f64::from(sign.factor());
         self.course.shots += 1;

@@ -10,6 +10,7 @@ use super::shoot::{Beam, Shooter, shoot_at};
 use crate::form_factor::Gather;
 use crate::geometry::polygon;
 use crate::mesh::Mesh;
+use rayon::prelude::*;
 
 /// A shot is smooth on an element if at its centre it differs from the mean of the corners by no more than this times ε_r …
 const RESIDUAL: f64 = 0.5;
@@ -57,8 +58,11 @@ impl<'a> Descent<'a> {
         while !level.is_empty() {
             self.evaluate(&level);
             let is_split = |e: &u32| !self.mesh.elements[*e as usize].is_leaf();
-            let split = level.into_iter().filter(is_split);
-            let (rough, rest): (Vec<u32>, Vec<u32>) = split.partition(|e| self.is_rough(*e));
+            let (rough, rest): (Vec<u32>, Vec<u32>) = level
+                .into_par_iter()
+                .with_min_len(64)
+                .filter(is_split)
+                .partition(|e| self.is_rough(*e));
             smooth.extend(rest);
             let parts = |e: u32| self.mesh.elements[e as usize].parts();
             level = rough.into_iter().flat_map(parts).collect();

@@ -9,6 +9,8 @@ use super::shoot::{Beam, Shooter, evaluate, shoot_at};
 use crate::form_factor::{Gather, Receiver};
 use crate::mesh::{Lattice, Mesh, NONE};
 use crate::radiometry::Spectrum;
+use rayon::iter::Either;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// One shot in the middle of its refinement.
@@ -30,14 +32,20 @@ impl Refinement<'_> {
     /// Tests `candidates` (leaves), splits those that fail and computes the shot at the new vertices; returns the new
     /// leaves, which are to be tested next. Empty when all passed.
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
-        let mut failed = Vec::new();
-        let mut passed = Vec::new();
-        for &element in candidates {
-            if self.mesh.elements[element as usize].is_leaf() && self.mesh.may_split(element) {
-                let fails = self.nodal_difference(element) || self.residual(element);
-                if fails { &mut failed } else { &mut passed }.push(element);
-            }
-        }
+        let may_split =
+            |e: &u32| self.mesh.elements[*e as usize].is_leaf() && self.mesh.may_split(*e);
+        let fails = |e: &u32| self.nodal_difference(*e) || self.residual(*e);
+        let (mut failed, passed): (Vec<u32>, Vec<u32>) = candidates
+            .par_iter()
+            .with_min_len(256)
+            .filter(|e| may_split(e))
+            .partition_map(|e| {
+                if fails(e) {
+                    Either::Left(*e)
+                } else {
+                    Either::Right(*e)
+                }
+            });
         if !matches!(self.beam.shooter, Shooter::All { settled: true, .. }) {
             // What hides a part of all light together is a shadow of none.
             failed.extend(self.visibility_differs(&passed));
@@ -95,21 +103,24 @@ impl Refinement<'_> {
 
     /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
     fn visibility_differs(&mut self, elements: &[u32]) -> Vec<u32> {
-        let mut failed = Vec::new();
-        let mut open = Vec::new();
-        for &element in elements {
-            let of = &self.mesh.elements[element as usize];
-            let threshold = self.options.visibility_significance * self.scale(element);
+        let matters = |e: &u32| {
+            let of = &self.mesh.elements[*e as usize];
+            let threshold = self.options.visibility_significance * self.scale(*e);
             let known = || of.vertices().map(|v| &self.arrived[v as usize]);
-            if known().any(|g| f64::from(g.unoccluded.max_element()) > threshold) {
-                let range = Range::of(known().map(|g| g.visibility));
+            let matters = known().any(|g| f64::from(g.unoccluded.max_element()) > threshold);
+            matters.then(|| (*e, Range::of(known().map(|g| g.visibility))))
+        };
+        let (mut failed, open): (Vec<u32>, Vec<(u32, Range)>) = elements
+            .par_iter()
+            .with_min_len(256)
+            .filter_map(matters)
+            .partition_map(|(e, range)| {
                 if range.width() >= self.options.epsilon_v {
-                    failed.push(element);
+                    Either::Left(e)
                 } else {
-                    open.push((element, range));
+                    Either::Right((e, range))
                 }
-            }
-        }
+            });
         if let Shooter::All { .. } = self.beam.shooter {
             // The index is of all light together: as the middles of sides would cost as much as splitting does, tests 1 and 2 have
             // to find what is there.
@@ -224,12 +235,11 @@ impl Refinement<'_> {
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();
         self.rays += shoot_at(self.mesh, self.light, self.beam, &open, self.arrived);
-        let mut irradiance: Vec<Spectrum> = self.arrived.iter().map(|g| g.irradiance).collect();
-        self.mesh.continue_to_buried(&mut irradiance, first);
-        for (vertex, &now) in irradiance.iter().enumerate().skip(first_vertex) {
-            self.arrived[vertex].irradiance = now;
-            self.light.irradiance[vertex] += now;
-            self.light.unshot[vertex] += now;
+        self.mesh
+            .continue_to_buried(self.arrived, |g| &mut g.irradiance, first);
+        for (vertex, arrived) in self.arrived.iter().enumerate().skip(first_vertex) {
+            self.light.irradiance[vertex] += arrived.irradiance;
+            self.light.unshot[vertex] += arrived.irradiance;
         }
         fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
         fresh

@@ -10,7 +10,24 @@ use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::{Beam, Shooter};
+use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
+use rayon::prelude::*;
+
+/// Patches whose light is gathered side by side …
+const SIDE_BY_SIDE: usize = 8;
+
+/// … unless together they would hold more values at vertices.
+const VALUES: usize = 1 << 22;
+
+/// What one patch gives to all others.
+struct Given {
+    irradiance: Vec<Spectrum>,
+    rays: u64,
+    lost: Lost,
+    /// What arrived and what escaped over what was sent, and what was sent, if that was much.
+    sum: Option<(f64, f64)>,
+}
 
 impl Solver<'_> {
     /// Nothing gathered yet.
@@ -25,18 +42,22 @@ impl Solver<'_> {
         }
     }
 
-    /// Gathers the light of one more patch; when there is none, it replaces what was there.
+    /// Gathers the light of some more patches; when there are none, it replaces what was there.
     pub(super) fn gather(&mut self, mut so_far: Gathering) {
         let whole = match so_far.whole.take() {
             Some(whole) => whole,
             None => self.whole(so_far.ambient),
         };
-        let power = |patch: &u32| {
-            let power = whole.unshot_power(&self.mesh, *patch as usize, Sign::Positive);
-            power.element_sum()
+        let power = |patch: u32| {
+            let power = whole.unshot_power(&self.mesh, patch as usize, Sign::Positive);
+            (patch, power.element_sum())
         };
-        let next = (so_far.next..self.mesh.patches.len() as u32).find(|p| power(p) > 0.0);
-        let Some(patch) = next else {
+        let next: Vec<(u32, f64)> = (so_far.next..self.mesh.patches.len() as u32)
+            .map(power)
+            .filter(|(_, sent)| *sent > 0.0)
+            .take(side_by_side(&self.mesh))
+            .collect();
+        let Some((last, _)) = next.last() else {
             let Gathering {
                 irradiance,
                 lost,
@@ -45,14 +66,26 @@ impl Solver<'_> {
             } = so_far;
             return self.take_over(irradiance, &whole, lost, sums);
         };
-        let sent = power(&patch);
-        self.gather_from(patch as usize, sent, &whole, &mut so_far);
-        so_far.next = patch + 1;
+        let given: Vec<Given> = next
+            .par_iter()
+            .with_max_len(1)
+            .map(|(patch, sent)| self.given(*patch as usize, *sent, &whole))
+            .collect();
+        for of in given {
+            for (sum, irradiance) in so_far.irradiance.iter_mut().zip(&of.irradiance) {
+                *sum += *irradiance;
+            }
+            self.course.rays += of.rays;
+            so_far.lost += of.lost;
+            so_far.sums.extend(of.sum);
+        }
+        so_far.next = last + 1;
         so_far.whole = Some(whole);
         self.course.stage = Stage::Gathering(so_far);
     }
 
-    fn gather_from(&mut self, patch: usize, sent: f64, whole: &Light, into: &mut Gathering) {
+    /// What a patch that sends the power `sent` gives to the others.
+    fn given(&self, patch: usize, sent: f64, whole: &Light) -> Given {
         let power = sent / self.emitted().element_sum();
         let sampler = self.sampler();
         let source = self.source_of(whole, (patch, Sign::Positive), &sampler.thresholds);
@@ -63,22 +96,22 @@ impl Solver<'_> {
             shooter: &shooter,
             sign: Sign::Positive,
         };
-        let arrived = self.arrivals(beam, patch, &reached);
-        let mut received = Power::ZERO;
-        for (vertex, gather) in arrived.iter().enumerate() {
-            into.irradiance[vertex] += gather.irradiance;
-            received += gather.irradiance.as_dvec3() * self.mesh.weights[vertex];
-        }
+        let (arrived, rays) = self.arrivals(beam, patch, &reached);
+        let irradiance: Vec<Spectrum> = arrived.into_iter().map(|g| g.irradiance).collect();
+        let received = irradiance.iter().zip(&self.mesh.weights);
+        let received: Power = received.map(|(e, w)| e.as_dvec3() * *w).sum();
         let lost = self.escape(
             patch,
             &shooter,
             power,
             self.course.shots as u32 + patch as u32,
         );
-        into.lost += lost;
-        if power > 1e-3 {
-            into.sums
-                .push(((received + lost.all).element_sum() / sent, sent));
+        let sum = (received + lost.all).element_sum() / sent;
+        Given {
+            irradiance,
+            rays,
+            lost,
+            sum: (power > 1e-3).then_some((sum, sent)),
         }
     }
 
@@ -119,4 +152,8 @@ impl Solver<'_> {
             .recip()
             .as_vec3()
     }
+}
+
+fn side_by_side(mesh: &Mesh) -> usize {
+    (VALUES / mesh.vertices.len().max(1)).clamp(1, SIDE_BY_SIDE)
 }

@@ -71,7 +71,8 @@ pub(super) fn shoot_at(
     arrived: &mut [Gather],
 ) -> u64 {
     let points: Vec<_> = vertices
-        .iter()
+        .par_iter()
+        .with_min_len(256)
         .filter(|v| mesh.receives(**v))
         .map(|v| receiver_at(mesh, light, *v))
         .collect();

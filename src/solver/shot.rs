@@ -38,7 +38,9 @@ impl<'a> Solver<'a> {
             sign,
         };
         self.light.take(&self.mesh, shooter, sign);
-        shot.arrived = self.arrivals(beam, shooter, &reached);
+        let rays;
+        (shot.arrived, rays) = self.arrivals(beam, shooter, &reached);
+        self.course.rays += rays;
         for (vertex, gather) in shot.arrived.iter().enumerate() {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
@@ -158,9 +160,14 @@ impl<'a> Solver<'a> {
         patches.map(|p| faces(p, source, extent)).collect()
     }
 
-    /// What a beam from a patch gives to each vertex of the patches that it reaches: what an emitter sends is evaluated at all of
-    /// them, anything else as far down as it is rough.
-    pub(super) fn arrivals(&mut self, beam: Beam, shooter: usize, reached: &[bool]) -> Vec<Gather> {
+    /// What a beam from a patch gives to each vertex of the patches that it reaches, and with how many rays: what an emitter sends is
+    /// evaluated at all of them, anything else as far down as it is rough.
+    pub(super) fn arrivals(
+        &self,
+        beam: Beam,
+        shooter: usize,
+        reached: &[bool],
+    ) -> (Vec<Gather>, u64) {
         let mesh = &self.mesh;
         let is_reached = |e: &u32| reached[mesh.elements[*e as usize].patch as usize];
         let elements: Vec<u32> = if mesh.patches[shooter].exitance != Spectrum::ZERO {
@@ -171,14 +178,10 @@ impl<'a> Solver<'a> {
         };
         let mut descent = Descent::new(mesh, &self.light, beam, &self.options);
         descent.descend(elements);
-        self.course.rays += descent.rays;
         let mut arrived = descent.arrived;
-        let mut irradiance: Vec<Spectrum> = arrived.iter().map(|g| g.irradiance).collect();
-        self.mesh.continue_to_buried(&mut irradiance, 0);
-        for (gather, received) in arrived.iter_mut().zip(irradiance) {
-            gather.irradiance = received;
-        }
-        arrived
+        self.mesh
+            .continue_to_buried(&mut arrived, |g| &mut g.irradiance, 0);
+        (arrived, descent.rays)
     }
 
     /// What of a source's power, a fraction `power` of the emitted, leaves the scene.

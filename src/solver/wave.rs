@@ -169,11 +169,8 @@ impl<'a> Solver<'a> {
     /// A wave has arrived everywhere.
     fn arrive(&mut self, mut wave: Wave) {
         self.mesh.share(&mut wave.arrived, Gather::mean);
-        let mut irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
-        self.mesh.continue_to_buried(&mut irradiance, 0);
-        for (gather, received) in wave.arrived.iter_mut().zip(irradiance) {
-            gather.irradiance = received;
-        }
+        self.mesh
+            .continue_to_buried(&mut wave.arrived, |g| &mut g.irradiance, 0);
         match wave.kind {
             Kind::Unshot(sign) => self.arrive_unshot(wave, sign),
             Kind::Whole(ambient) => self.arrive_whole(wave, ambient),
