@@ -1,7 +1,8 @@
 //! What a mesh receives: the weights with which values at vertices are integrated.
 
-use super::Mesh;
+use super::{Element, Mesh};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// How much of its area a quadrilateral, and a triangle, gives to its centre beyond what the linear interpolant on its fan does, at
 /// its corners' expense. Light is mostly curved one way over an element: the interpolant cuts its tops off, and each reflection would
@@ -14,16 +15,31 @@ impl Mesh {
     pub fn integrate(&mut self) {
         let mut weights = vec![0.0; self.vertices.len()];
         let positions: Vec<DVec3> = (0..self.vertices.len() as u32)
+            .into_par_iter()
+            .with_min_len(1024)
             .map(|v| self.position(v))
             .collect();
         let at = |v: u32| positions[v as usize];
-        for leaf in self.leaves() {
-            let of = &self.elements[leaf as usize];
+        let triangles = |of: &Element| {
+            let centre = at(of.centre);
+            let area = |a, b| (at(a) - centre).cross(at(b) - centre).length() / 2.0;
+            let mut areas = [0.0; 4];
+            of.sides().for_each(|(i, a, b)| areas[i] = area(a, b));
+            areas
+        };
+        let areas: Vec<[f64; 4]> = self
+            .elements
+            .par_iter()
+            .with_min_len(1024)
+            .filter(|of| of.is_leaf())
+            .map(triangles)
+            .collect();
+        let leaves = self.elements.iter().filter(|of| of.is_leaf());
+        for (of, areas) in leaves.zip(areas) {
             let corners = of.corners();
             let mut whole = 0.0;
-            for (_, a, b) in of.sides() {
-                let centre = at(of.centre);
-                let area = (at(a) - centre).cross(at(b) - centre).length() / 2.0;
+            for (i, a, b) in of.sides() {
+                let area = areas[i];
                 for vertex in [of.centre, a, b] {
                     weights[vertex as usize] += area / 3.0;
                 }

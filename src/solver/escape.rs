@@ -59,19 +59,21 @@ pub(super) fn escaped(
     draws: Vec<Draw>,
     visibility: &dyn Visibility,
     backing: &[Backing],
-    is_open: impl Fn(u32, DVec3) -> bool,
+    is_open: impl Fn(u32, DVec3) -> bool + Sync,
     extent: f64,
 ) -> Lost {
-    let mut draws = draws;
-    draws.retain(|draw| is_open(draw.patch, draw.point));
     draws
         .par_chunks(1024)
         .map(|chunk| {
-            let rays: Vec<Ray> = chunk.iter().map(|d| ray(d, extent)).collect();
+            let open: Vec<&Draw> = chunk
+                .iter()
+                .filter(|draw| is_open(draw.patch, draw.point))
+                .collect();
+            let rays: Vec<Ray> = open.iter().map(|d| ray(d, extent)).collect();
             let mut hits = Vec::new();
             visibility.nearest(&rays, &mut hits);
             let mut lost = Lost::default();
-            for ((draw, hit), ray) in chunk.iter().zip(&hits).zip(&rays) {
+            for ((draw, hit), ray) in open.iter().zip(&hits).zip(&rays) {
                 let onto_back = hit.as_ref().is_some_and(|hit| is_dark(hit, ray, backing));
                 if onto_back {
                     lost.onto_backs += draw.power;

@@ -34,7 +34,10 @@ impl Refinement<'_> {
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
         let may_split =
             |e: &u32| self.mesh.elements[*e as usize].is_leaf() && self.mesh.may_split(*e);
-        let fails = |e: &u32| self.nodal_difference(*e) || self.residual(*e);
+        let fails = |e: &u32| {
+            let unit = self.unit(*e);
+            self.nodal_difference(*e, unit) || self.residual(*e, unit)
+        };
         let (mut failed, passed): (Vec<u32>, Vec<u32>) = candidates
             .par_iter()
             .with_min_len(256)
@@ -68,33 +71,39 @@ impl Refinement<'_> {
     }
 
     /// Test 1: corners differ by more than ε_d.
-    fn nodal_difference(&self, element: u32) -> bool {
+    fn nodal_difference(&self, element: u32, unit: f64) -> bool {
         let corners = self.mesh.elements[element as usize].corners();
         let values = corners.iter().map(|v| self.light.irradiance[*v as usize]);
         let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
         let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
-        self.exceeds(element, high - low, self.options.epsilon_d)
+        self.size(element, high - low) > self.options.epsilon_d * unit
     }
 
     /// Test 2: at the centre, computed and interpolated light differ by more than ε_r. Both are sums over all shots since
     /// the element was made (before that the centre was interpolated), so small lights add up.
-    fn residual(&self, element: u32) -> bool {
+    fn residual(&self, element: u32, unit: f64) -> bool {
         let of = &self.mesh.elements[element as usize];
         let residual = of.residual(|v| self.light.irradiance[v as usize]);
-        self.exceeds(element, residual, self.options.epsilon_r)
+        self.size(element, residual) > self.options.epsilon_r * unit
     }
 
-    fn exceeds(&self, element: u32, difference: Spectrum, epsilon: f64) -> bool {
+    /// A difference of irradiances on an element in the quantity that is tested, largest channel.
+    fn size(&self, element: u32, difference: Spectrum) -> f64 {
         let of = &self.mesh.elements[element as usize];
         let weight = match self.options.quantity {
             Quantity::Irradiance => Spectrum::ONE,
             Quantity::Radiosity => self.mesh.patches[of.patch as usize].reflectance,
         };
+        f64::from((difference * weight).max_element())
+    }
+
+    /// What ε_d and ε_r are multiples of on an element.
+    fn unit(&self, element: u32) -> f64 {
         let h0 = self.options.limits.initial_size * self.mesh.frame.extent();
         let growth = (h0 / self.mesh.longest_side(element))
             .max(1.0)
             .powf(self.options.size_exponent);
-        f64::from((difference * weight).max_element()) > epsilon * self.scale(element) * growth
+        self.scale(element) * growth
     }
 
     fn scale(&self, element: u32) -> f64 {
@@ -155,7 +164,7 @@ impl Refinement<'_> {
             let arrived = |v: u32| self.arrived[v as usize].irradiance;
             let interpolated = self.mesh.interpolated(leaf, feeler.point, arrived);
             let difference = (feeler.irradiance - interpolated).abs();
-            !self.exceeds(leaf, difference, self.options.epsilon_r)
+            self.size(leaf, difference) <= self.options.epsilon_r * self.unit(leaf)
         };
         let feelers = self.feelers.iter().map(|f| (f, leaf_of(f)));
         feelers
