@@ -45,6 +45,30 @@ impl Sight {
         uncertainty: 0.0,
         cut: false,
     };
+
+    /// By Eq. (2), of a polygon of three or four corners; a triangle repeats its first.
+    #[inline(always)]
+    pub fn near(receiver: Receiver, corners: [DVec3; 4], count: usize, cut: bool) -> Self {
+        let corners = corners.map(|corner| corner - receiver.point);
+        let form_factor = if cut {
+            point_to_visible_polygon(receiver.normal, &corners[..count]).0
+        } else {
+            point_to_quad(receiver.normal, corners).max(0.0)
+        };
+        Self {
+            form_factor,
+            uncertainty: 0.0,
+            cut,
+        }
+    }
+}
+
+impl Receiver {
+    /// How high a point is above its horizon.
+    #[inline(always)]
+    pub fn height(&self, point: DVec3) -> f64 {
+        self.normal.dot(point - self.point)
+    }
 }
 
 impl Formula {
@@ -76,30 +100,22 @@ impl Formula {
                 cut: false,
             };
         }
-        let corners = cell.corners().map(|corner| corner - receiver.point);
-        let form_factor = if cut {
-            point_to_visible_polygon(receiver.normal, &corners[..cell.corner_count()]).0
-        } else {
-            point_to_quad(receiver.normal, corners).max(0.0)
-        };
-        Sight {
-            form_factor,
-            uncertainty: 0.0,
-            cut,
-        }
+        Sight::near(receiver, cell.corners(), cell.corner_count(), cut)
     }
 }
 
 fn cut_by_horizon(receiver: Receiver, cell: &Cell) -> bool {
-    cell.corners()
-        .iter()
-        .any(|corner| receiver.normal.dot(*corner - receiver.point) < 0.0)
+    let corners = cell.corners();
+    corners.iter().any(|corner| receiver.height(*corner) < 0.0)
 }
 
-/// What the horizon leaves of a cell, relative to the receiver.
-pub fn above_horizon(receiver: Receiver, cell: &Cell) -> Clipped {
-    let corners = cell.corners().map(|corner| corner - receiver.point);
-    polygon::clip(&corners[..cell.corner_count()], |corner| {
+/// What the horizon leaves of a polygon, relative to the receiver.
+pub fn above_horizon(receiver: Receiver, corners: &[DVec3]) -> Clipped {
+    let mut relative = [DVec3::ZERO; 4];
+    for (relative, corner) in relative.iter_mut().zip(corners) {
+        *relative = *corner - receiver.point;
+    }
+    polygon::clip(&relative[..corners.len()], |corner| {
         receiver.normal.dot(corner)
     })
 }

@@ -158,7 +158,7 @@ impl Sampler<'_> {
             contribution.max_element()
         };
         let area = if sight.cut {
-            vector_area(above_horizon(receiver, of).corners()).length()
+            vector_area(above_horizon(receiver, of.outline()).corners()).length()
         } else {
             of.area
         };

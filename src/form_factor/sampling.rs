@@ -187,7 +187,7 @@ impl Sampler<'_> {
         let cell = source.cell(leaf.cell);
         // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
         let point = if leaf.cut {
-            receiver.point + point_in_cut(&above_horizon(receiver, cell), s, t)
+            receiver.point + point_in_cut(&above_horizon(receiver, cell.outline()), s, t)
         } else {
             cell.at(s, t)
         };

@@ -71,6 +71,11 @@ impl Cell {
         self.shape.corners()
     }
 
+    /// The three or four corners.
+    pub(super) fn outline(&self) -> &[DVec3] {
+        &self.corners[..self.corner_count()]
+    }
+
     /// Its area.
     pub fn area(&self) -> f64 {
         self.area

@@ -1,6 +1,6 @@
 //! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{Clusters, Node, Sends, Tile};
+use super::{APART, Clusters, Node, Sends, Tile};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
@@ -17,52 +17,94 @@ impl Clusters {
             (facing(of.normal.as_dvec3()), of.back)
         };
         order.sort_by_key(side);
-        let mut builder = Builder {
+        let builder = Builder {
             tiles: &tiles,
             centres: tiles.iter().map(Tile::centre).collect(),
-            nodes: Vec::with_capacity(tiles.len()),
         };
-        let mut roots = Vec::new();
+        let (mut roots, mut nodes) = (Vec::new(), Vec::with_capacity(2 * tiles.len()));
         let mut first = 0;
-        let groups = order.chunk_by_mut(|a, b| side(a) == side(b));
-        for group in groups {
-            roots.push(builder.nodes.len() as u32);
-            builder.add(group, first, 0);
+        for group in order.chunk_by_mut(|a, b| side(a) == side(b)) {
+            let root = nodes.len();
+            roots.push(root as u32);
+            nodes.resize(root + count(group.len()), Node::default());
+            let place = Place {
+                number: root as u32,
+                first,
+                depth: 0,
+            };
+            builder.build(group, &mut nodes[root..], place);
             first += group.len() as u32;
         }
-        let nodes = builder.nodes;
+        let mut places = vec![0; tiles.len()];
+        for (place, tile) in (0..).zip(&order) {
+            places[*tile as usize] = place;
+        }
         Self {
             radiosity: vec![Spectrum::ZERO; tiles.len()],
             sends: vec![Sends::default(); nodes.len()],
             sums: vec![0.0; tiles.len() + 1],
-            tiles,
+            tiles: order.iter().map(|tile| tiles[*tile as usize]).collect(),
+            places,
             nodes,
             roots,
-            order,
             seed: 0,
             offset: (SURFACE_OFFSET * extent) as f32,
         }
     }
 }
 
+/// Nodes of a tree over so many tiles.
+const fn count(tiles: usize) -> usize {
+    2 * tiles - 1
+}
+
 struct Builder<'a> {
     tiles: &'a [Tile],
     centres: Vec<Vec3>,
-    nodes: Vec<Node>,
+}
+
+/// Where a node is.
+#[derive(Clone, Copy)]
+struct Place {
+    number: u32,
+    /// In the order of the leaves.
+    first: u32,
+    depth: u32,
 }
 
 impl Builder<'_> {
-    /// Adds the node over `group`, which begins at `first` in the order of the leaves, and all below it.
-    fn add(&mut self, group: &mut [u32], first: u32, depth: u32) {
-        let number = self.nodes.len();
-        let node = self.node(group, first);
-        self.nodes.push(node);
-        if group.len() > 1 {
-            let middle = self.halve(group, depth);
-            let (left, right) = group.split_at_mut(middle);
-            self.add(left, first, depth + 1);
-            self.nodes[number].second = self.nodes.len() as u32;
-            self.add(right, first + middle as u32, depth + 1);
+    /// Builds the node over `group`, the first of `nodes`, and all below it, which are the others.
+    fn build(&self, group: &mut [u32], nodes: &mut [Node], at: Place) {
+        let Some((node, below)) = nodes.split_first_mut() else {
+            return;
+        };
+        *node = self.node(group, at.first);
+        if group.len() == 1 {
+            return;
+        }
+        let middle = self.halve(group, at.depth);
+        let (left, right) = group.split_at_mut(middle);
+        let (nodes_left, nodes_right) = below.split_at_mut(count(middle));
+        let depth = at.depth + 1;
+        let at_left = Place {
+            number: at.number + 1,
+            depth,
+            ..at
+        };
+        let at_right = Place {
+            number: at_left.number + nodes_left.len() as u32,
+            first: at.first + middle as u32,
+            depth,
+        };
+        node.second = at_right.number;
+        if nodes_left.len().min(nodes_right.len()) > APART {
+            rayon::join(
+                || self.build(left, nodes_left, at_left),
+                || self.build(right, nodes_right, at_right),
+            );
+        } else {
+            self.build(left, nodes_left, at_left);
+            self.build(right, nodes_right, at_right);
         }
     }
 

@@ -1,26 +1,25 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Clusters, Node, Sends};
+use super::{APART, Aim, Clusters, Node, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
 use std::mem::take;
 
-/// Subtrees with more nodes than this are worth a thread.
-const APART: usize = 1 << 11;
-
 impl Clusters {
     /// Takes over the radiosity of each tile, in their order; `seed` draws the points that rays are aimed at.
     pub fn radiate(&mut self, radiosity: Vec<Spectrum>, seed: u32) {
         assert_eq!(radiosity.len(), self.tiles.len());
-        self.radiosity = radiosity;
+        for (place, radiosity) in self.places.iter().zip(radiosity) {
+            self.radiosity[*place as usize] = radiosity;
+        }
         self.seed = seed;
         let mut sum = 0.0;
-        for (place, tile) in self.order.iter().enumerate() {
-            self.sums[place] = sum;
-            sum += f64::from(self.weight(*tile));
+        for tile in 0..self.tiles.len() {
+            self.sums[tile] = sum;
+            sum += f64::from(self.weight(tile as u32));
         }
-        self.sums[self.order.len()] = sum;
+        self.sums[self.tiles.len()] = sum;
         let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
         let roots = self.roots.iter().copied();
         let ends = roots.clone().skip(1).chain([nodes.len() as u32]);
@@ -37,7 +36,7 @@ impl Clusters {
             return;
         };
         if node.second == 0 {
-            let tile = self.order[node.first as usize];
+            let tile = node.first;
             *sent = self.sent_by(tile);
             node.peak = self.radiosity[tile as usize].max_element();
         } else {
@@ -90,7 +89,7 @@ impl Clusters {
             .partition_point(|sum| *sum <= passed)
             .clamp(1, sums.len() - 1)
             - 1;
-        let tile = self.order[node.first as usize + place];
+        let tile = node.first + place as u32;
         self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
     }
 

@@ -23,6 +23,9 @@ pub use gather::ClusterScratch;
 use crate::radiometry::Spectrum;
 use glam::{DVec3, Vec3};
 
+/// Subtrees with more nodes than this are worth a thread.
+const APART: usize = 1 << 11;
+
 /// A flat triangle or quad that shoots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
@@ -85,7 +88,10 @@ impl Tile {
 /// The tree over all tiles of a scene, with what they radiate.
 #[derive(Debug, Clone)]
 pub struct Clusters {
+    /// In the order of the leaves, one each.
     tiles: Vec<Tile>,
+    /// Where each is in it, in the order in which they were given.
+    places: Vec<u32>,
     /// Radiosity of each tile.
     radiosity: Vec<Spectrum>,
     /// In depth-first order: the first child of an inner node follows it.
@@ -93,9 +99,7 @@ pub struct Clusters {
     /// What each of them sends.
     sends: Vec<Sends>,
     roots: Vec<u32>,
-    /// The tiles in the order of the leaves, one each.
-    order: Vec<u32>,
-    /// Σ area × mean radiosity of the tiles before each in that order, and of all.
+    /// Σ area × mean radiosity of the tiles before each, and of all.
     sums: Vec<f64>,
     /// By how much the targets of rays are lifted off their tiles.
     offset: f32,
@@ -104,7 +108,7 @@ pub struct Clusters {
 }
 
 /// A cluster: what it takes to decide whether it is to be opened, in one line of the cache.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct Node {
     centre: Vec3,
@@ -120,7 +124,7 @@ struct Node {
     peak: f32,
     /// The second child; the first follows this node. 0 for a leaf.
     second: u32,
-    /// Its tiles are `order[first..end]`.
+    /// Its tiles are `tiles[first..end]`.
     first: u32,
     end: u32,
 }
@@ -152,7 +156,8 @@ struct Aim {
 impl Clusters {
     /// The tiles with the radiosity of each, in the order in which they were given.
     pub fn tiles(&self) -> impl ExactSizeIterator<Item = (&Tile, Spectrum)> + Clone {
-        self.tiles.iter().zip(self.radiosity.iter().copied())
+        let places = self.places.iter().map(|place| *place as usize);
+        places.map(|place| (&self.tiles[place], self.radiosity[place]))
     }
 
     /// Memory that a tree over so many tiles holds, bytes.

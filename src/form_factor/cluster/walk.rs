@@ -2,14 +2,14 @@
 
 use super::found::{Drawn, Found};
 use super::view::{LANES, Mask, Row, Rows, Views, lanes, mask};
-use super::{Clusters, Node, Sends};
-use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
-use crate::form_factor::source::{Cell, SourceShape};
+use super::{Clusters, Node, Sends, Tile};
+use crate::form_factor::disk::point_to_disk;
+use crate::form_factor::hybrid::{Receiver, Sight, above_horizon, point_in_cut};
 use crate::form_factor::{Formula, Sampler};
-use crate::geometry::{jitter, lift};
+use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use crate::simd::Kernel;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// Parts that one point may gather before its thresholds are doubled; half as many more double them again.
 const MOST: usize = 2048;
@@ -229,8 +229,7 @@ impl Walk<'_> {
             return self.descend(number, opened);
         }
         for lane in lanes(opened) {
-            let tile = self.clusters.order[node.first as usize];
-            self.take_tile(lane, tile, limits);
+            self.take_tile(lane, node.first, limits);
             if self.points[lane].len() > limits.most[lane] {
                 limits.most[lane] += MOST / 2;
                 limits.difference[lane] *= 2.0;
@@ -276,12 +275,27 @@ impl Walk<'_> {
         }
     }
 
-    /// Clusters take Eq. (1) where the five-times rule would; a single tile is near.
-    fn formula(&self) -> Formula {
-        match self.sampler.formula {
-            Formula::Disk => Formula::Disk,
-            Formula::Hybrid(_) | Formula::Polygon => Formula::Polygon,
+    /// What a point sees of a tile from in front. Clusters take Eq. (1) where the five-times rule would; a single tile is near.
+    fn sight(&self, receiver: Receiver, tile: &Tile) -> Option<Sight> {
+        let corners = tile.corners.map(Vec3::as_dvec3);
+        let normal = tile.normal.as_dvec3();
+        let heights = corners.map(|corner| receiver.height(corner));
+        let is_below = heights.iter().all(|height| *height <= 0.0);
+        if is_below || normal.dot(corners[0] - receiver.point) >= 0.0 {
+            return None;
         }
+        if let Formula::Disk = self.sampler.formula {
+            let to = tile.centre().as_dvec3() - receiver.point;
+            let area = f64::from(tile.area());
+            let form_factor = point_to_disk(receiver.normal, to, normal, area);
+            return Some(Sight {
+                form_factor,
+                uncertainty: 0.0,
+                cut: false,
+            });
+        }
+        let cut = heights.iter().any(|height| *height < 0.0);
+        Some(Sight::near(receiver, corners, tile.corner_count(), cut))
     }
 
     fn take_tile(&mut self, lane: usize, number: u32, limits: &Limits) {
@@ -291,14 +305,9 @@ impl Walk<'_> {
             return;
         }
         let tile = &self.clusters.tiles[number as usize];
-        let shape = if tile.corner_count() == 3 {
-            SourceShape::Triangle
-        } else {
-            SourceShape::Quad
+        let Some(sight) = self.sight(receiver, tile) else {
+            return;
         };
-        let cell = Cell::new(tile.corners.map(Vec3::as_dvec3), shape);
-        let normal = tile.normal.as_dvec3();
-        let sight = self.formula().sight(receiver, &cell, normal);
         let contribution = radiosity * sight.form_factor as f32;
         let measure = contribution.max_element();
         if measure <= 0.0 {
@@ -306,17 +315,19 @@ impl Walk<'_> {
         }
         let side = (measure / limits.estimate[lane]).sqrt().ceil();
         let side = (side as u32).clamp(1, MOST_RAYS);
-        let cut = sight.cut.then(|| above_horizon(receiver, &cell));
-        let extent = self.sampler.extent;
+        let cut = sight.cut.then(|| {
+            let corners = tile.corners.map(Vec3::as_dvec3);
+            above_horizon(receiver, &corners[..tile.corner_count()])
+        });
         let aim = |ray: u32| {
             let [s, t] = jitter(key, number ^ ray.wrapping_mul(0x9e37_79b9));
             let place = |i: u32, x: f64| (f64::from(i) + 0.05 + 0.9 * x) / f64::from(side);
             let (s, t) = (place(ray % side, s), place(ray / side, t));
-            let point: DVec3 = match &cut {
-                Some(cut) => receiver.point + point_in_cut(cut, s, t),
-                None => cell.at(s, t),
+            let point = match &cut {
+                Some(cut) => (receiver.point + point_in_cut(cut, s, t)).as_vec3(),
+                None => tile.at(s as f32, t as f32),
             };
-            lift(point, normal, extent).as_vec3()
+            point + tile.normal * self.clusters.offset
         };
         if side == 1 {
             self.pool(lane, contribution, aim(0), limits);
