@@ -102,7 +102,7 @@ fn the_ledger_closes_wherever_a_solve_is_left() {
     let mut run = Run::new(scene, settings(draft(), ENGINE, 0)).expect("can be solved");
     let mut within_a_shot = 0;
     let mut shots = 0;
-    while run.go(&mut Batches(3)).expect("can be solved") == StopReason::Interrupted {
+    while run.go(&mut Batches(2)).expect("can be solved") == StopReason::Interrupted {
         let report = &run.solution().report;
         let power = &report.power;
         assert!(power.residual.abs() < 0.05 * power.emitted, "{power:?}");
