@@ -1,8 +1,7 @@
 //! Throughput of occlusion: Embree's own calls on packets that are ready, our wrapper around them, and obvhs with our traversal, on the
 //! same fans of 64 segments, interleaved, on one thread; first with the widest instruction set, then with both held to narrower ones.
 //!
-//! `cargo bench --bench occlusion`; rates are medians, ratios are to Embree's own calls of the same instruction set. The rule of
-//! `--engine auto` follows these figures.
+//! `cargo bench --bench occlusion`; rates are medians, ratios are to Embree's own calls of the same instruction set.
 
 #[cfg(embree)]
 mod raw;

@@ -14,7 +14,7 @@ use radiosity::mesh::Mesh;
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent, Solver, occluders};
 use radiosity::visibility::{
-    EngineChoice, EngineInfo, Fans, Hit, Isa, Obvhs, Ray, Triangles, Visibility, build,
+    EngineChoice, EngineInfo, Fans, Hit, Obvhs, Ray, Triangles, Visibility, build,
 };
 use std::path::Path;
 use std::sync::Mutex;
@@ -134,14 +134,15 @@ fn ask(engine: &dyn Visibility, asked: &[Fans]) {
 fn ready(triangles: &Triangles, asked: &[Fans]) -> Box<dyn FnMut()> {
     #[cfg(embree)]
     {
-        let (_, mut answer) = raw::contender(Isa::widest(), triangles, asked);
+        let widest = radiosity::visibility::Isa::widest();
+        let (_, mut answer) = raw::contender(widest, triangles, asked);
         Box::new(move || {
             std::hint::black_box(answer());
         })
     }
     #[cfg(not(embree))]
     {
-        let _ = (triangles, asked, Isa::widest());
+        let _ = (triangles, asked);
         Box::new(|| {})
     }
 }

@@ -309,7 +309,7 @@ const ENGINES_DIFFER: f64 = 1e-3;
 #[test]
 fn where_rays_are_traced_the_engines_agree_pair_by_pair() {
     let scene = past_a_blind(4);
-    // The fastest that is built in, which is Embree where it is installed, then the others.
+    // Embree where it was built in, then the others.
     let engines = [ENGINE, EngineChoice::Obvhs, EngineChoice::BruteForce];
     let matrices = engines.map(|engine| {
         let options = Options {

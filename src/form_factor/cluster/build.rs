@@ -1,6 +1,6 @@
 //! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{APART, Clusters, Node, Sends, Tile};
+use super::{Clusters, Node, Sends, Tile, on_both};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
@@ -97,15 +97,11 @@ impl Builder<'_> {
             depth,
         };
         node.second = at_right.number;
-        if nodes_left.len().min(nodes_right.len()) > APART {
-            rayon::join(
-                || self.build(left, nodes_left, at_left),
-                || self.build(right, nodes_right, at_right),
-            );
-        } else {
-            self.build(left, nodes_left, at_left);
-            self.build(right, nodes_right, at_right);
-        }
+        on_both(
+            nodes_left.len().min(nodes_right.len()),
+            || self.build(left, nodes_left, at_left),
+            || self.build(right, nodes_right, at_right),
+        );
     }
 
     fn node(&self, group: &[u32], first: u32) -> Node {

@@ -1,6 +1,6 @@
 //! What clusters send, from what their tiles send.
 
-use super::{APART, Aim, Clusters, Node, Sends};
+use super::{Aim, Clusters, Node, Sends, on_both};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
@@ -44,15 +44,11 @@ impl Clusters {
             let middle = (second - first) as usize;
             let (left, right) = below.split_at_mut(middle);
             let (left_sent, right_sent) = sent_below.split_at_mut(middle);
-            if left.len().min(right.len()) > APART {
-                rayon::join(
-                    || self.send(first, left, left_sent),
-                    || self.send(second, right, right_sent),
-                );
-            } else {
-                self.send(first, left, left_sent);
-                self.send(second, right, right_sent);
-            }
+            on_both(
+                left.len().min(right.len()),
+                || self.send(first, left, left_sent),
+                || self.send(second, right, right_sent),
+            );
             let draw = jitter(number, self.seed)[0] as f32;
             *sent = joined(left_sent[0], right_sent[0], draw);
             node.peak = left[0].peak.max(right[0].peak);

@@ -26,6 +26,16 @@ use glam::{DVec3, Vec3};
 /// Subtrees with more nodes than this are worth a thread.
 const APART: usize = 1 << 11;
 
+/// Works on both subtrees of a node, side by side where the smaller has so many nodes that it is worth a thread.
+fn on_both(nodes: usize, left: impl FnOnce() + Send, right: impl FnOnce() + Send) {
+    if nodes > APART {
+        rayon::join(left, right);
+    } else {
+        left();
+        right();
+    }
+}
+
 /// A flat triangle or quad that shoots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
