@@ -1,7 +1,7 @@
 //! Splitting elements, keeping the quadtree balanced, and the topology that follows.
 
 use super::build::centre_of;
-use super::{Element, Lattice, Mesh, NONE, Vertex};
+use super::{Element, Lattice, Mesh, NONE, Patch, Vertex};
 use glam::DVec3;
 
 /// A vertex on the border of its patch is evaluated this fraction of the way to the centre of the element that made it.
@@ -22,6 +22,13 @@ impl Mesh {
         // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
         level < self.limits.max_depth.min(17)
             && self.longest_side(element) > self.limits.min_size * self.frame.extent()
+    }
+
+    /// Whether a patch is one element, which the limits do not allow to be split.
+    pub fn is_small(&self, patch: &Patch) -> bool {
+        let root = patch.roots.start;
+        let is_whole = patch.roots.len() == 1 && self.elements[root as usize].is_leaf();
+        is_whole && !self.may_split(root)
     }
 
     /// Splits a leaf into four; returns the first child.

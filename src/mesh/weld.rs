@@ -58,13 +58,10 @@ impl Mesh {
         for site in sites.groups() {
             self.settle(&site, &mut weld);
         }
-        for patch in &self.patches {
+        for patch in self.patches.iter().filter(|patch| self.is_small(patch)) {
             let root = patch.roots.start;
-            let element = &self.elements[root as usize];
-            if patch.roots.len() == 1 && element.is_leaf() && !self.may_split(root) {
-                weld.leader[element.centre as usize] = NONE;
-                weld.followed.push(root);
-            }
+            weld.leader[self.elements[root as usize].centre as usize] = NONE;
+            weld.followed.push(root);
         }
         self.weld = weld;
     }

@@ -11,6 +11,7 @@ mod descent;
 mod error;
 mod escape;
 mod feelers;
+mod groups;
 mod ledger;
 mod light;
 mod observer;

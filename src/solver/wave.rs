@@ -7,10 +7,11 @@
 use super::audit::Span;
 use super::course::{ALL, Shot, Stage};
 use super::escape::Lost;
+use super::groups::Groups;
 use super::light::{Light, Sign};
 use super::observer::Phase;
 use super::run::Solver;
-use super::shoot::{Beam, Shooter, shoot_at};
+use super::shoot::{Beam, Shooter, evaluate, receiver_at, shoot_at};
 use super::tiling::Tiling;
 use crate::form_factor::{Gather, Sampler};
 use crate::mesh::Mesh;
@@ -148,8 +149,10 @@ impl<'a> Solver<'a> {
         };
         let end = (wave.next as usize + SLICE).min(self.mesh.vertices.len());
         let open = |v: &u32| !self.mesh.buried[*v as usize];
-        let slice: Vec<u32> = (wave.next..end as u32).filter(open).collect();
-        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &slice, &mut wave.arrived);
+        let slice = (wave.next..end as u32).filter(open);
+        let (small, others): (Vec<u32>, Vec<u32>) = slice.partition(|v| self.is_of_small(*v));
+        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &others, &mut wave.arrived);
+        self.course.rays += self.shoot_at_groups(beam, &small, &mut wave.arrived);
         wave.next = end as u32;
         self.radiated = Some(all);
         if end == self.mesh.vertices.len() {
@@ -157,6 +160,41 @@ impl<'a> Solver<'a> {
         } else {
             self.course.stage = Stage::Waving(wave);
         }
+    }
+
+    /// Whether a vertex belongs to a patch that is smaller than elements may be.
+    fn is_of_small(&self, vertex: u32) -> bool {
+        let patch = self.mesh.vertices[vertex as usize].patch;
+        self.mesh.is_small(&self.mesh.patches[patch as usize])
+    }
+
+    /// [`shoot_at`] for vertices of small patches: not all of them receive. Returns the number of rays.
+    fn shoot_at_groups(&self, beam: Beam, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
+        let mesh = &self.mesh;
+        let receiving = vertices.iter().copied().filter(|v| mesh.receives(*v));
+        let receiving: Vec<u32> = receiving.collect();
+        let mut rays = 0;
+        let receive = |nodes: &[u32]| {
+            let receivers = nodes.iter().map(|v| receiver_at(mesh, &self.light, *v));
+            let receivers: Vec<_> = receivers.collect();
+            let (gathers, traced) = evaluate(beam.sampler, beam.shooter, &receivers);
+            rays += traced;
+            gathers
+        };
+        let scale = beam.sampler.thresholds.scale;
+        let differ = |light: &[Gather]| {
+            let low = light.iter().map(|g| g.irradiance).reduce(Spectrum::min);
+            let high = light.iter().map(|g| g.irradiance).reduce(Spectrum::max);
+            let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
+            let unit = scale.at(f64::from(high.max_element()));
+            f64::from((high - low).max_element()) > self.options.epsilon_d * unit
+        };
+        let found = Groups::new(mesh, &receiving).gather(receive, differ);
+        for (vertex, mut gather) in found {
+            gather.irradiance *= beam.sign.factor();
+            arrived[vertex as usize] = gather;
+        }
+        rays
     }
 
     /// For light that the gathering at the end will ask for once more.
