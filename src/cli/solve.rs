@@ -16,7 +16,7 @@ use crate::output::{
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::{RenderOptions, Tone};
 use crate::scene::Scene;
-use crate::solution::{Report, Solution};
+use crate::solution::{LitMesh, Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
 use crate::{Run, Settings};
@@ -199,34 +199,8 @@ pub(super) fn write(
 ) -> Result<(), CliError> {
     let started = Instant::now();
     write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
-    let lit = solution.lit_mesh();
-    let exporter = Exporter {
-        solution,
-        lit: &lit,
-        tone: Tone::for_mesh(&lit),
-        efficacy: WHITE_EFFICACY,
-    };
-    for format in &how.formats.0 {
-        let name = format!("solution.{}", format.extension());
-        exporter.write(*format, &folder.join(name))?;
-    }
-    if !how.no_pictures {
-        for (number, camera) in solution.cameras.iter().enumerate() {
-            // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
-            let into = if number == 0 {
-                folder.to_path_buf()
-            } else {
-                folder.join(&camera.name)
-            };
-            draw(
-                &lit,
-                camera,
-                &RenderOptions::standard(),
-                how.engine.unwrap_or_default(),
-                how.threads,
-                &into,
-            )?;
-        }
+    if !how.formats.0.is_empty() || !how.no_pictures {
+        write_lit(solution, &solution.lit_mesh(), folder, how)?;
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
     solution.report.peak_memory = peak_memory();
@@ -235,6 +209,40 @@ pub(super) fn write(
     write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
     if !how.no_html {
         write_page(solution, folder, how, history)?;
+    }
+    Ok(())
+}
+
+/// The meshes that were asked for, and the pictures.
+fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Result<(), CliError> {
+    let exporter = Exporter {
+        solution,
+        lit,
+        tone: Tone::for_mesh(lit),
+        efficacy: WHITE_EFFICACY,
+    };
+    for format in &how.formats.0 {
+        let name = format!("solution.{}", format.extension());
+        exporter.write(*format, &folder.join(name))?;
+    }
+    if how.no_pictures {
+        return Ok(());
+    }
+    for (number, camera) in solution.cameras.iter().enumerate() {
+        // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
+        let into = if number == 0 {
+            folder.to_path_buf()
+        } else {
+            folder.join(&camera.name)
+        };
+        draw(
+            lit,
+            camera,
+            &RenderOptions::standard(),
+            how.engine.unwrap_or_default(),
+            how.threads,
+            &into,
+        )?;
     }
     Ok(())
 }

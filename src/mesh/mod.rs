@@ -81,6 +81,13 @@ impl Mesh {
         (0..self.elements.len() as u32).filter(|e| self.elements[*e as usize].is_leaf())
     }
 
+    /// How many leaves there are: a split makes four elements of one.
+    pub fn leaf_count(&self) -> usize {
+        let roots = self.patches.last().map_or(0, |patch| patch.roots.end);
+        let roots = roots as usize;
+        roots + (self.elements.len() - roots) / 4 * 3
+    }
+
     /// The vertex of a patch at a lattice point, if there is one.
     pub fn vertex_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
         self.at.get(&(patch, lattice)).copied()

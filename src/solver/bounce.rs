@@ -1,14 +1,15 @@
 //! Reflected light on its way: between the direct light and the last gathering it arrives at *neighbourhoods*.
 //!
 //! What is reflected varies slowly, and the gathering at the end asks for it anew at every vertex. So until then the vertices of
-//! a small cube of space whose patches face the same way, and make one sheet or see one another, receive as one: the mean of a few of them,
-//! other ones in each wave.
+//! a small cube of space whose patches face the same way, and make one sheet or see one another, receive as one: what one of them does,
+//! another in each wave. (With two, `staircase2` took longer and came no nearer to its reference.)
 
 use super::light::Sign;
 use super::run::Solver;
 use super::sheets::{see_one_another, sheets};
 use super::shoot::{Beam, evaluate, receiver_at};
 use super::tiling::SIZE;
+use crate::form_factor::Gather;
 use crate::geometry::{facing, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::Spectrum;
@@ -24,12 +25,6 @@ const LARGE: f64 = 1.0 / 16.0;
 
 /// Pools that a small part of a cube is tried with.
 const MOST_POOLS: usize = 4;
-
-/// Vertices that a neighbourhood receives at …
-const SAMPLES: usize = 2;
-
-/// … unless a wave carries no more than this fraction of the emitted power: then one is enough.
-const WEAK: f64 = 0.05;
 
 /// The vertices that light falls on, by neighbourhood.
 #[derive(Debug, Clone)]
@@ -139,26 +134,14 @@ fn weight(mesh: &Mesh, vertex: u32) -> f64 {
     mesh.weights[vertex as usize].max(f64::MIN_POSITIVE)
 }
 
-/// No more than `samples` vertices, drawn in proportion to the area that each stands for; one if together they stand for little.
-fn drawn(mesh: &Mesh, of: &[u32], seed: u32, samples: usize) -> impl Iterator<Item = u32> {
-    let area = area(mesh, of);
-    let count = if is_little(mesh, area) {
-        1
-    } else {
-        of.len().min(samples)
-    };
-    let step = area / count as f64;
-    let mut next = jitter(of[0], seed)[0] * step;
-    let mut passed = 0.0;
-    of.iter().flat_map(move |v| {
-        passed += weight(mesh, *v);
-        let mut times = 0;
-        while next < passed {
-            next += step;
-            times += 1;
-        }
-        std::iter::repeat_n(*v, times)
-    })
+/// One of the vertices, drawn in proportion to the area that each stands for.
+fn drawn(mesh: &Mesh, of: &[u32], seed: u32) -> u32 {
+    let mut left = jitter(of[0], seed)[0] * area(mesh, of);
+    let reached = of.iter().find(|v| {
+        left -= weight(mesh, **v);
+        left < 0.0
+    });
+    *reached.unwrap_or(&of[of.len() - 1])
 }
 
 impl Solver<'_> {
@@ -174,13 +157,13 @@ impl Solver<'_> {
         let neighbourhoods = self.neighbourhoods.take();
         let neighbourhoods =
             neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh, self.visibility));
-        let samples = if power > WEAK { SAMPLES } else { 1 };
-        let arrived = self.arrivals_near(beam, &neighbourhoods, samples);
+        let arrived = self.arrivals_near(beam, &neighbourhoods);
         self.light.take_all(&self.mesh, sign);
-        for (irradiance, vertices) in arrived.iter().zip(neighbourhoods.iter()) {
+        for (gather, vertices) in arrived.iter().zip(neighbourhoods.iter()) {
+            let irradiance = gather.irradiance * sign.factor();
             for vertex in vertices {
-                self.light.irradiance[*vertex as usize] += *irradiance;
-                self.light.unshot[*vertex as usize] += *irradiance;
+                self.light.irradiance[*vertex as usize] += irradiance;
+                self.light.unshot[*vertex as usize] += irradiance;
             }
         }
         self.mesh
@@ -194,30 +177,16 @@ impl Solver<'_> {
         self.keep_tiling(shooter);
     }
 
-    /// The mean of what arrives in each neighbourhood.
-    fn arrivals_near(
-        &mut self,
-        beam: Beam,
-        near: &Neighbourhoods,
-        samples: usize,
-    ) -> Vec<Spectrum> {
+    /// What arrives at one vertex of each neighbourhood.
+    fn arrivals_near(&mut self, beam: Beam, near: &Neighbourhoods) -> Vec<Gather> {
         let seed = self.course.shots as u32;
-        let mut receivers = Vec::new();
-        let mut ends = Vec::new();
-        for vertices in near.iter() {
-            let drawn = drawn(&self.mesh, vertices, seed, samples);
-            receivers.extend(drawn.map(|v| receiver_at(&self.mesh, &self.light, v)));
-            ends.push(receivers.len());
-        }
+        let receivers: Vec<_> = near
+            .iter()
+            .map(|vertices| drawn(&self.mesh, vertices, seed))
+            .map(|vertex| receiver_at(&self.mesh, &self.light, vertex))
+            .collect();
         let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &receivers);
         self.course.rays += rays;
-        let mut begin = 0;
-        let mean = |end: &usize| {
-            let of = &gathers[begin..*end];
-            begin = *end;
-            let sum: Spectrum = of.iter().map(|g| g.irradiance).sum();
-            sum * (beam.sign.factor() / of.len().max(1) as f32)
-        };
-        ends.iter().map(mean).collect()
+        gathers
     }
 }

@@ -39,6 +39,8 @@ pub struct Solver<'a> {
     /// Area of one square of the frame's unit, m².
     pub(super) square_metres: f64,
     pub(super) reference: f64,
+    /// What all patches emit, W times the square of the frame's scale.
+    emitted: Power,
     /// What was unshot when that was last counted, for who watches.
     unshot: Option<Power>,
     /// What the solve took before it was taken up again.
@@ -95,6 +97,11 @@ impl<'a> Solver<'a> {
             radiated: None,
             neighbourhoods: None,
             square_metres: (scene.metres_per_unit / mesh.frame.scale()).powi(2),
+            emitted: mesh
+                .patches
+                .iter()
+                .map(|p| p.exitance.as_dvec3() * p.area)
+                .sum(),
             reference: if area > 0.0 { emitted / area } else { 0.0 },
             mesh,
             light,
@@ -222,11 +229,7 @@ impl<'a> Solver<'a> {
     }
 
     pub(super) fn emitted(&self) -> Power {
-        self.mesh
-            .patches
-            .iter()
-            .map(|p| p.exitance.as_dvec3() * p.area)
-            .sum()
+        self.emitted
     }
 
     fn progress(&mut self) -> Progress {
@@ -235,12 +238,11 @@ impl<'a> Solver<'a> {
         let known = self.unshot.filter(|_| stays);
         let unshot = known.unwrap_or_else(|| self.unshot_powers().iter().sum());
         self.unshot = Some(unshot);
-        let inner = self.mesh.elements.iter().filter(|e| !e.is_leaf()).count();
         Progress {
             phase: self.course.phase(&self.mesh),
             shots: self.course.shots,
             meshing_shots: self.course.meshing_shots,
-            elements: self.mesh.elements.len() - inner,
+            elements: self.mesh.leaf_count(),
             vertices: self.mesh.vertices.len(),
             rays: self.course.rays,
             emitted: self.emitted() * self.square_metres,
