@@ -4,6 +4,7 @@
 //! a small cube of space whose patches face the same way, and make one sheet or see one another, receive as one: what one of them does,
 //! another in each wave. (With two, `staircase2` took longer and came no nearer to its reference.)
 
+use super::course::{Bounce, Stage};
 use super::light::Sign;
 use super::run::Solver;
 use super::sheets::{see_one_another, sheets};
@@ -147,6 +148,9 @@ fn drawn(mesh: &Mesh, of: &[u32], seed: u32) -> u32 {
 impl Solver<'_> {
     /// What sets out as `cells` arrives at all neighbourhoods.
     pub(super) fn bounce(&mut self, sign: Sign, cells: &[Spectrum], power: f64) {
+        let before = Bounce {
+            unshot: self.unshot(),
+        };
         let shooter = self.radiating(cells, false);
         let sampler = self.coarse_sampler();
         let beam = Beam {
@@ -175,6 +179,7 @@ impl Solver<'_> {
         self.course.shots += 1;
         self.neighbourhoods = Some(neighbourhoods);
         self.keep_tiling(shooter);
+        self.course.stage = Stage::Bounced(before);
     }
 
     /// What arrives at one vertex of each neighbourhood.

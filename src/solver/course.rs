@@ -11,7 +11,7 @@ use super::tiling::tile_count;
 use super::wave::Wave;
 use crate::form_factor::{DEEPEST, Gather};
 use crate::mesh::Mesh;
-use crate::radiometry::Spectrum;
+use crate::radiometry::{Power, Spectrum};
 use serde::{Deserialize, Serialize};
 
 /// How far a solve has come, besides the mesh and the light on it.
@@ -57,6 +57,15 @@ pub(super) enum Stage {
     Waving(Wave),
     /// A pass of refinement after all light was gathered as clusters.
     Settling(Shot),
+    /// A shot, after a wave that arrived at neighbourhoods.
+    Bounced(Bounce),
+}
+
+/// A wave that has arrived at neighbourhoods.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Bounce {
+    /// What was unshot before it.
+    pub unshot: Power,
 }
 
 /// A shot that has arrived at the vertices there were, while the mesh is refined for it.
@@ -109,7 +118,7 @@ impl Course {
     /// What is done next, for who watches.
     pub(super) fn phase(&self, mesh: &Mesh) -> Phase {
         match &self.stage {
-            Stage::Shooting => Phase::Shooting,
+            Stage::Shooting | Stage::Bounced(_) => Phase::Shooting,
             Stage::Waving(wave) => wave.phase(mesh),
             Stage::Refining(_) | Stage::Settling(_) => Phase::Refining,
             Stage::Gathering(so_far) => Phase::Gathering {
@@ -124,6 +133,8 @@ impl Course {
     pub fn reopen(&mut self) {
         let all_was_shot = match &self.stage {
             Stage::Finished | Stage::Gathering(_) | Stage::Settling(_) => true,
+            // What was unshot before says nothing any more.
+            Stage::Bounced(_) => true,
             Stage::Waving(wave) => wave.is_whole(),
             Stage::Shooting | Stage::Refining(_) => false,
         };
@@ -137,7 +148,7 @@ impl Course {
     pub fn check(&self, mesh: &Mesh) -> Result<(), String> {
         let (patches, elements) = (mesh.patches.len() as u32, mesh.elements.len() as u32);
         let fits = match &self.stage {
-            Stage::Shooting | Stage::Finished => true,
+            Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
             Stage::Refining(shot) | Stage::Settling(shot) => {
                 let mut levels = 1..=DEEPEST;
                 let fits = match shot.shooter {

@@ -3,7 +3,7 @@
 use super::audit::Audit;
 use super::bounce::Neighbourhoods;
 use super::burial::buried;
-use super::course::{Course, Stage};
+use super::course::{Bounce, Course, Stage};
 use super::escape::Backing;
 use super::ledger::Ledger;
 use super::light::{Light, Sign};
@@ -13,6 +13,7 @@ use super::outcome::{Outcome, StopReason};
 use super::parts::{Laps, Parts};
 use super::shoot::Shooter;
 use super::tiling::Tiling;
+use super::wave::EARLY;
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
@@ -165,7 +166,13 @@ impl<'a> Solver<'a> {
             let part = part(&self.course.stage);
             match std::mem::take(&mut self.course.stage) {
                 Stage::Shooting => {
-                    if let Some(reason) = self.shoot() {
+                    if let Some(reason) = self.shoot(None) {
+                        return reason;
+                    }
+                }
+                Stage::Bounced(bounce) => {
+                    if let Some(reason) = self.shoot(Some(bounce)) {
+                        self.course.stage = Stage::Bounced(bounce);
                         return reason;
                     }
                 }
@@ -182,17 +189,21 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// One shot, the gathering if enough has been shot, or a reason to do neither.
-    fn shoot(&mut self) -> Option<StopReason> {
+    /// One shot, the gathering if enough has been shot, or a reason to do neither; after a `bounce` the gathering may begin earlier.
+    fn shoot(&mut self, bounce: Option<Bounce>) -> Option<StopReason> {
         let powers = self.unshot_powers();
         let emitted = self.emitted().element_sum();
         let unshot: Power = powers.iter().sum();
         self.laps.lap(|parts| &mut parts.selecting);
-        if unshot.element_sum() <= self.options.tolerance * emitted {
+        let early = match bounce {
+            Some(_) if self.options.regather && self.is_clustered() => EARLY,
+            _ => 1.0,
+        };
+        if unshot.element_sum() <= early * self.options.tolerance * emitted {
             match (self.options.regather, self.is_clustered()) {
                 (false, _) => self.course.stage = Stage::Finished,
                 (true, false) => self.course.stage = Stage::Gathering(self.gathering()),
-                (true, true) => self.begin_gathering(),
+                (true, true) => self.begin_gathering(bounce),
             }
             return None;
         }
@@ -278,7 +289,9 @@ fn part(stage: &Stage) -> fn(&mut Parts) -> &mut f64 {
         Stage::Refining(_) | Stage::Settling(_) => |parts| &mut parts.refining,
         Stage::Gathering(_) => |parts| &mut parts.gathering,
         Stage::Waving(wave) if wave.is_whole() => |parts| &mut parts.gathering,
-        Stage::Waving(_) | Stage::Shooting | Stage::Finished => |parts| &mut parts.shooting,
+        Stage::Waving(_) | Stage::Shooting | Stage::Bounced(_) | Stage::Finished => {
+            |parts| &mut parts.shooting
+        }
     }
 }
 
