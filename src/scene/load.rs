@@ -3,6 +3,7 @@
 use super::geometry::{self, ENDINGS, Format, Geometry, Reading};
 use super::settings::{self, Settings, SidesRule, UpAxis};
 use super::text::{TextFile, quote};
+use super::warnings::Tally;
 use super::{NamedScene, Names, Scene, SceneError, cameras, duplicates, materials, sides, split};
 use std::path::{Component, Path, PathBuf};
 
@@ -167,7 +168,13 @@ fn assemble(
         }
     };
     let rules: Vec<SidesRule> = materials.sides.iter().map(stated).collect();
-    sides::decide(polygons, &repeated, &rules, &mut surfaces);
+    let shines = |polygon: usize| materials.list[polygons.materials[polygon] as usize].emits();
+    let mut inside_out = Tally::default();
+    sides::decide(polygons, &repeated, &rules, shines, &mut surfaces)
+        .into_iter()
+        .for_each(|polygon| inside_out.add(polygons.line(polygon)));
+    let what = "of closed solids that are inside out made two-sided";
+    inside_out.report(&mut warnings, path, "polygon", what);
 
     let (metres_per_unit, cameras) = match settings {
         Some((file, settings)) => (

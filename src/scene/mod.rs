@@ -51,7 +51,8 @@
 //! # Sides
 //!
 //! `auto` makes closed, consistently oriented sets of polygons radiate from the front, all others from both
-//! sides. Emitted light leaves the front in every case.
+//! sides; so do, with a warning, closed sets that face inwards although nothing stands in them, nor do they shine, nor are they all
+//! there is: solids that are inside out. Emitted light leaves the front in every case.
 //!
 //! # Polygons
 //!
@@ -66,6 +67,7 @@ mod duplicates;
 mod error;
 mod geometry;
 mod gltf;
+mod inside_out;
 mod limits;
 mod load;
 mod materials;

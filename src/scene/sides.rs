@@ -2,34 +2,54 @@
 //!
 //! Real models are sheets with any orientation. A set of polygons that hang together by edges and that is
 //! closed and consistently oriented is a solid, or a room seen from inside: its stated front radiates.
-//! Anything else is two-sided. Closed and consistent means that every edge is run through as often in one
+//! Anything else is two-sided, and so is a solid that is `inside_out`. Closed and consistent means that every edge is run through as often in one
 //! direction as in the other. Each time once, for an ordinary solid; twice where two solids touch along
 //! an edge, or where a sheet is modelled as two coincident faces back to back.
 
+use super::inside_out;
 use super::polygons::Polygons;
 use super::settings::SidesRule;
 use super::{Sides, Surface};
 use rayon::slice::ParallelSliceMut;
 
-/// Sets the sides of all surfaces by their materials' rules.
+/// Sets the sides of all surfaces by their materials' rules; `shines` says which polygons emit. Returns the polygons of solids that
+/// are inside out, if that decided.
 pub(super) fn decide(
     polygons: &Polygons,
     repeated: &[bool],
     rules: &[SidesRule],
+    shines: impl Fn(usize) -> bool,
     surfaces: &mut [Surface],
-) {
-    let closed = match rules.contains(&SidesRule::Auto) {
-        true => closed(polygons, repeated),
-        false => Vec::new(),
+) -> Vec<usize> {
+    let (is_skin, inside_out) = match rules.contains(&SidesRule::Auto) {
+        true => skins(polygons, repeated, shines),
+        false => Default::default(),
     };
     for surface in surfaces {
         surface.sides = match rules[surface.material as usize] {
             SidesRule::Front => Sides::Front,
             SidesRule::Both => Sides::Both,
-            SidesRule::Auto if closed[surface.polygon as usize] => Sides::Front,
+            SidesRule::Auto if is_skin[surface.polygon as usize] => Sides::Front,
             SidesRule::Auto => Sides::Both,
         };
     }
+    let rule = |polygon: usize| rules[polygons.materials[polygon] as usize];
+    let decided = |polygon: &usize| {
+        inside_out[*polygon] && !repeated[*polygon] && rule(*polygon) == SidesRule::Auto
+    };
+    (0..inside_out.len()).filter(decided).collect()
+}
+
+/// For each polygon whether it is the skin of a solid or room, as its front says; and whether of a solid that is inside out.
+fn skins(
+    polygons: &Polygons,
+    repeated: &[bool],
+    shines: impl Fn(usize) -> bool,
+) -> (Vec<bool>, Vec<bool>) {
+    let sets = Sets::new(polygons, repeated);
+    let inside_out = inside_out::find(polygons, &sets, shines);
+    let is_skin = |polygon: usize| sets.is_closed(polygon as u32) && !inside_out[polygon];
+    ((0..polygons.len()).map(is_skin).collect(), inside_out)
 }
 
 /// One polygon's use of an edge.
@@ -41,30 +61,53 @@ struct EdgeUse {
     forward: bool,
 }
 
-/// For each polygon whether it belongs to a closed, consistently oriented set.
-///
-/// Polygons without area take part, since they fill the cracks that they were made for.
-pub(super) fn closed(polygons: &Polygons, repeated: &[bool]) -> Vec<bool> {
-    let mut uses = edge_uses(polygons, repeated);
-    uses.par_sort_unstable();
-    let mut sets = DisjointSets::new(polygons.len());
-    let mut open = Vec::new();
-    for uses in uses.chunk_by(|a, b| a.edge == b.edge) {
-        let first = uses[0].polygon;
-        uses.iter()
-            .for_each(|other| sets.join(first, other.polygon));
-        let forward = uses.iter().filter(|edge_use| edge_use.forward).count();
-        if 2 * forward != uses.len() {
-            open.push(first);
+/// The polygons that hang together by edges.
+pub(super) struct Sets {
+    /// For each polygon the first of its set.
+    roots: Vec<u32>,
+    /// Whether the set of each first is open, or not consistently oriented.
+    is_open: Vec<bool>,
+}
+
+impl Sets {
+    /// The sets of all polygons. Those without area take part, since they fill the cracks that they were made for.
+    pub fn new(polygons: &Polygons, repeated: &[bool]) -> Self {
+        let mut uses = edge_uses(polygons, repeated);
+        uses.par_sort_unstable();
+        let mut sets = DisjointSets::new(polygons.len());
+        let mut open = Vec::new();
+        for uses in uses.chunk_by(|a, b| a.edge == b.edge) {
+            let first = uses[0].polygon;
+            uses.iter()
+                .for_each(|other| sets.join(first, other.polygon));
+            let forward = uses.iter().filter(|edge_use| edge_use.forward).count();
+            if 2 * forward != uses.len() {
+                open.push(first);
+            }
+        }
+        let mut is_open = vec![false; polygons.len()];
+        for polygon in open {
+            is_open[sets.root(polygon) as usize] = true;
+        }
+        let roots = (0..polygons.len() as u32).map(|polygon| sets.root(polygon));
+        Self {
+            roots: roots.collect(),
+            is_open,
         }
     }
-    let mut is_open = vec![false; polygons.len()];
-    for polygon in open {
-        is_open[sets.root(polygon) as usize] = true;
+
+    /// Whether a polygon belongs to a closed, consistently oriented set.
+    pub fn is_closed(&self, polygon: u32) -> bool {
+        !self.is_open[self.roots[polygon as usize] as usize]
     }
-    (0..polygons.len() as u32)
-        .map(|polygon| !is_open[sets.root(polygon) as usize])
-        .collect()
+
+    /// The polygons of each set, by their first ones.
+    pub fn members(&self) -> Vec<Vec<u32>> {
+        let mut order: Vec<u32> = (0..self.roots.len() as u32).collect();
+        order.par_sort_by_key(|polygon| (self.roots[*polygon as usize], *polygon));
+        let sets = order.chunk_by(|a, b| self.roots[*a as usize] == self.roots[*b as usize]);
+        sets.map(<[u32]>::to_vec).collect()
+    }
 }
 
 fn edge_uses(polygons: &Polygons, repeated: &[bool]) -> Vec<EdgeUse> {

@@ -15,6 +15,14 @@ const CUBE: [&str; 6] = [
     "f 1 5 8 4",
 ];
 
+/// The cube as a room, seen from inside.
+fn turned() -> [String; 6] {
+    CUBE.map(|face| {
+        let corners: Vec<&str> = face[2..].split(' ').rev().collect();
+        format!("f {}", corners.join(" "))
+    })
+}
+
 fn cube(faces: &[&str]) -> Scene {
     obj(&format!("{CORNERS}{}\n", faces.join("\n"))).0
 }
@@ -31,11 +39,29 @@ fn assert_all(scene: &Scene, sides: Sides) {
 #[test]
 fn a_closed_box_radiates_from_its_front() {
     assert_all(&cube(&CUBE), Sides::Front);
-    let room = CUBE.map(|face| {
-        let corners: Vec<&str> = face[2..].split(' ').rev().collect();
-        format!("f {}", corners.join(" "))
-    });
-    assert_all(&cube(&room.each_ref().map(String::as_str)), Sides::Front);
+    assert_all(
+        &cube(&turned().each_ref().map(String::as_str)),
+        Sides::Front,
+    );
+}
+
+/// Its front would be seen by nobody.
+#[test]
+fn a_box_that_is_inside_out_has_two_sides() {
+    let room = format!("{CORNERS}{}\n", turned().join("\n"));
+    let sheet = |x: f64| format!("v {x} 0.4 0.5\nv {x} 0.6 0.4\nv {x} 0.5 0.6\nf 9 10 11\n");
+    let (beside, _) = obj(&format!("{room}{}", sheet(2.0)));
+    assert_all(&beside, Sides::Both);
+    let warning = "obj:9: 6 polygons of closed solids that are inside out made two-sided";
+    assert!(
+        beside.warnings.iter().any(|w| w.contains(warning)),
+        "{:?}",
+        beside.warnings
+    );
+    let (inside, _) = obj(&format!("{room}{}", sheet(0.5)));
+    let skin = inside.surfaces.iter().take(6);
+    assert!(skin.clone().all(|surface| surface.sides == Sides::Front));
+    assert!(!inside.warnings.iter().any(|w| w.contains("inside out")));
 }
 
 #[test]

@@ -1,0 +1,87 @@
+//! Solids that are inside out: closed sets of polygons whose stated front is on their inside, where there is nothing.
+//!
+//! A room seen from inside is closed and faces inwards too, but something stands in it, or it shines, or it is all there is. Of
+//! a solid whose polygons were written the wrong way round only the back shows, which would be black.
+
+use super::polygons::Polygons;
+use super::sides::Sets;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// For each polygon whether it is part of a solid that is inside out; `shines` says which polygons emit.
+pub(super) fn find(polygons: &Polygons, sets: &Sets, shines: impl Fn(usize) -> bool) -> Vec<bool> {
+    let of_set = sets.members();
+    let mut is_inside_out = vec![false; polygons.len()];
+    if of_set.len() < 2 {
+        return is_inside_out;
+    }
+    let first = |of: &Vec<u32>| corner(polygons, of[0]);
+    for set in &of_set {
+        let faces_inwards = sets.is_closed(set[0]) && volume(polygons, set) < 0.0;
+        if !faces_inwards || set.iter().any(|polygon| shines(*polygon as usize)) {
+            continue;
+        }
+        let [low, high] = bounds(polygons, set);
+        let is_near = |p: &DVec3| p.cmpgt(low).all() && p.cmplt(high).all();
+        let holds = |other: &Vec<u32>| {
+            let point = first(other);
+            other[0] != set[0] && is_near(&point) && surrounds(polygons, set, point)
+        };
+        if !of_set.par_iter().any(holds) {
+            set.iter()
+                .for_each(|polygon| is_inside_out[*polygon as usize] = true);
+        }
+    }
+    is_inside_out
+}
+
+fn corner(polygons: &Polygons, polygon: u32) -> DVec3 {
+    polygons.positions[polygons.corners(polygon as usize)[0] as usize]
+}
+
+/// The triangles of a set, fan by fan.
+fn triangles<'a>(polygons: &'a Polygons, set: &'a [u32]) -> impl Iterator<Item = [DVec3; 3]> + 'a {
+    set.iter().flat_map(|polygon| {
+        let corners = polygons.corners(*polygon as usize);
+        let at = |i: usize| polygons.positions[corners[i] as usize];
+        (2..corners.len()).map(move |i| [at(0), at(i - 1), at(i)])
+    })
+}
+
+/// What a closed set encloses; negative if its front is inside.
+fn volume(polygons: &Polygons, set: &[u32]) -> f64 {
+    let origin = corner(polygons, set[0]);
+    triangles(polygons, set)
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|p| p - origin);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum()
+}
+
+/// Whether a point is inside a closed set: the solid angles of its triangles make a whole sphere.
+fn surrounds(polygons: &Polygons, set: &[u32], point: DVec3) -> bool {
+    let solid_angle: f64 = triangles(polygons, set)
+        .map(|triangle| {
+            // Van Oosterom and Strackee (1983), eq. 8.
+            let [a, b, c] = triangle.map(|p| p - point);
+            let [x, y, z] = [a, b, c].map(DVec3::length);
+            let below = x * y * z + a.dot(b) * z + a.dot(c) * y + b.dot(c) * x;
+            2.0 * a.dot(b.cross(c)).atan2(below)
+        })
+        .sum();
+    solid_angle.abs() > TAU
+}
+
+fn bounds(polygons: &Polygons, set: &[u32]) -> [DVec3; 2] {
+    let corners = set
+        .iter()
+        .flat_map(|polygon| polygons.corners(*polygon as usize));
+    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for corner in corners {
+        let position = polygons.positions[*corner as usize];
+        bounds = [bounds[0].min(position), bounds[1].max(position)];
+    }
+    bounds
+}
