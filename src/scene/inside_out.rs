@@ -16,7 +16,6 @@ pub(super) fn find(polygons: &Polygons, sets: &Sets, shines: impl Fn(usize) -> b
     if of_set.len() < 2 {
         return is_inside_out;
     }
-    let first = |of: &Vec<u32>| corner(polygons, of[0]);
     for set in &of_set {
         let faces_inwards = sets.is_closed(set[0]) && volume(polygons, set) < 0.0;
         if !faces_inwards || set.iter().any(|polygon| shines(*polygon as usize)) {
@@ -24,9 +23,12 @@ pub(super) fn find(polygons: &Polygons, sets: &Sets, shines: impl Fn(usize) -> b
         }
         let [low, high] = bounds(polygons, set);
         let is_near = |p: &DVec3| p.cmpgt(low).all() && p.cmplt(high).all();
+        // What is only let into a solid, as a pane into its frame, has no middle there.
         let holds = |other: &Vec<u32>| {
-            let point = first(other);
-            other[0] != set[0] && is_near(&point) && surrounds(polygons, set, point)
+            let is_inside = |point: DVec3| is_near(&point) && surrounds(polygons, set, point);
+            other[0] != set[0]
+                && is_inside(corner(polygons, other[0]))
+                && is_inside(middle(polygons, other))
         };
         if !of_set.par_iter().any(holds) {
             set.iter()
@@ -72,6 +74,12 @@ fn surrounds(polygons: &Polygons, set: &[u32], point: DVec3) -> bool {
         })
         .sum();
     solid_angle.abs() > TAU
+}
+
+/// The middle of the box around a set.
+fn middle(polygons: &Polygons, set: &[u32]) -> DVec3 {
+    let [low, high] = bounds(polygons, set);
+    0.5 * (low + high)
 }
 
 fn bounds(polygons: &Polygons, set: &[u32]) -> [DVec3; 2] {

@@ -224,3 +224,88 @@ fn between(nodes: &[(Member, Gather)], at: &Member) -> Gather {
     mean.visibility = (all > 0.0).then(|| mean.irradiance.element_sum() / all);
     mean
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radiometry::Spectrum;
+
+    /// A strip of vertices along x, which face along z.
+    fn strip(count: u32) -> Groups {
+        let member = |vertex: u32| {
+            let at = DVec3::X * (f64::from(vertex) + 0.5) / f64::from(count);
+            Member::new(vertex, at, DVec3::Z, 1.0)
+        };
+        Groups {
+            members: (0..count).map(member).collect(),
+            found: vec![None; count as usize],
+            open: [0..count as usize].to_vec(),
+        }
+    }
+
+    fn gather(irradiance: f32) -> Gather {
+        Gather {
+            irradiance: Spectrum::splat(irradiance),
+            unoccluded: Spectrum::ONE,
+            visibility: Some(irradiance),
+        }
+    }
+
+    /// What 100 vertices of a strip receive, and how many were asked, where `light` says it by their place.
+    fn received(light: impl Fn(f32) -> f32, most: f32) -> (Vec<f32>, usize) {
+        let mut asked = 0;
+        let receive = |nodes: &[u32]| {
+            asked += nodes.len();
+            let at = nodes.iter().map(|v| (*v as f32 + 0.5) / 100.0);
+            at.map(|x| gather(light(x))).collect()
+        };
+        let differ = |of: &[Gather]| {
+            let values = of.iter().map(|g| g.irradiance.x);
+            let low = values.clone().fold(f32::INFINITY, f32::min);
+            values.fold(f32::NEG_INFINITY, f32::max) - low > most
+        };
+        let mut found: Vec<_> = strip(100).gather(receive, differ).collect();
+        found.sort_by_key(|(vertex, _)| *vertex);
+        assert!(found.iter().map(|(vertex, _)| *vertex).eq(0..100));
+        let found = found.iter().map(|(_, gather)| gather.irradiance.x);
+        (found.collect(), asked)
+    }
+
+    #[test]
+    fn even_light_is_asked_for_at_the_nodes_alone() {
+        let (found, asked) = received(|_| 0.25, 0.1);
+        assert_eq!(asked, NODES);
+        assert!(found.iter().all(|e| (e - 0.25).abs() < 1e-6), "{found:?}");
+    }
+
+    #[test]
+    fn light_that_is_interpolated_errs_by_no_more_than_nodes_differ() {
+        let light = |x: f32| x * x;
+        let (found, asked) = received(light, 0.2);
+        assert!((NODES + 1..90).contains(&asked), "{asked}");
+        for (vertex, e) in found.iter().enumerate() {
+            let exact = light((vertex as f32 + 0.5) / 100.0);
+            assert!((e - exact).abs() < 0.2, "{e} at {vertex}, {exact}");
+        }
+    }
+
+    #[test]
+    fn a_shadow_is_found_and_everything_beside_it_interpolated() {
+        let light = |x: f32| f32::from(u8::from(x < 0.37));
+        let (found, asked) = received(light, 0.1);
+        assert!(asked < 60, "{asked}");
+        for (vertex, e) in found.iter().enumerate() {
+            let exact = light((vertex as f32 + 0.5) / 100.0);
+            assert!((e - exact).abs() < 1e-6, "{e} at {vertex}");
+        }
+    }
+
+    #[test]
+    fn light_that_differs_everywhere_is_asked_for_everywhere() {
+        let (found, asked) = received(|x| (1000.0 * x).sin(), 0.0);
+        assert_eq!(asked, 100);
+        assert!(found.iter().enumerate().all(|(vertex, e)| {
+            (e - (1000.0 * ((vertex as f32 + 0.5) / 100.0)).sin()).abs() < 1e-6
+        }));
+    }
+}
