@@ -239,7 +239,7 @@ mod tests {
         Groups {
             members: (0..count).map(member).collect(),
             found: vec![None; count as usize],
-            open: [0..count as usize].to_vec(),
+            open: std::iter::once(0..count as usize).collect(),
         }
     }
 
