@@ -4,33 +4,44 @@
 //! a solid whose polygons were written the wrong way round only the back shows, which would be black.
 
 use super::polygons::Polygons;
-use super::sides::Sets;
+use super::sides::Bodies;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// For each polygon whether it is part of a solid that is inside out; `shines` says which polygons emit.
-pub(super) fn find(polygons: &Polygons, sets: &Sets, shines: impl Fn(usize) -> bool) -> Vec<bool> {
-    let of_set = sets.members();
+pub(super) fn find(
+    polygons: &Polygons,
+    bodies: &Bodies,
+    shines: impl Fn(usize) -> bool,
+) -> Vec<bool> {
+    let of_set = bodies.members();
     let mut is_inside_out = vec![false; polygons.len()];
     if of_set.len() < 2 {
         return is_inside_out;
     }
+    // In the order of x, so that a set looks at those alone that begin between its ends.
+    let mut by_place: Vec<(DVec3, &Vec<u32>)> = of_set
+        .iter()
+        .map(|set| (corner(polygons, set[0]), set))
+        .collect();
+    by_place.par_sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
     for set in &of_set {
-        let faces_inwards = sets.is_closed(set[0]) && volume(polygons, set) < 0.0;
+        let faces_inwards = bodies.is_closed(set[0]) && volume(polygons, set) < 0.0;
         if !faces_inwards || set.iter().any(|polygon| shines(*polygon as usize)) {
             continue;
         }
         let [low, high] = bounds(polygons, set);
         let is_near = |p: &DVec3| p.cmpgt(low).all() && p.cmplt(high).all();
         // What is only let into a solid, as a pane into its frame, has no middle there.
-        let holds = |other: &Vec<u32>| {
+        let holds = |(point, other): &(DVec3, &Vec<u32>)| {
             let is_inside = |point: DVec3| is_near(&point) && surrounds(polygons, set, point);
-            other[0] != set[0]
-                && is_inside(corner(polygons, other[0]))
-                && is_inside(middle(polygons, other))
+            other[0] != set[0] && is_inside(*point) && is_inside(middle(polygons, other))
         };
-        if !of_set.par_iter().any(holds) {
+        let from = by_place.partition_point(|(point, _)| point.x <= low.x);
+        let to = by_place.partition_point(|(point, _)| point.x < high.x);
+        let mut near = by_place[from..to].iter();
+        if !near.any(holds) {
             set.iter()
                 .for_each(|polygon| is_inside_out[*polygon as usize] = true);
         }

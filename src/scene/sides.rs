@@ -10,6 +10,7 @@ use super::inside_out;
 use super::polygons::Polygons;
 use super::settings::SidesRule;
 use super::{Sides, Surface};
+use crate::geometry::Sets;
 use rayon::slice::ParallelSliceMut;
 
 /// Sets the sides of all surfaces by their materials' rules; `shines` says which polygons emit. Returns the polygons of solids that
@@ -46,9 +47,9 @@ fn skins(
     repeated: &[bool],
     shines: impl Fn(usize) -> bool,
 ) -> (Vec<bool>, Vec<bool>) {
-    let sets = Sets::new(polygons, repeated);
-    let inside_out = inside_out::find(polygons, &sets, shines);
-    let is_skin = |polygon: usize| sets.is_closed(polygon as u32) && !inside_out[polygon];
+    let bodies = Bodies::new(polygons, repeated);
+    let inside_out = inside_out::find(polygons, &bodies, shines);
+    let is_skin = |polygon: usize| bodies.is_closed(polygon as u32) && !inside_out[polygon];
     ((0..polygons.len()).map(is_skin).collect(), inside_out)
 }
 
@@ -62,24 +63,24 @@ struct EdgeUse {
 }
 
 /// The polygons that hang together by edges.
-pub(super) struct Sets {
+pub(super) struct Bodies {
     /// For each polygon the first of its set.
     roots: Vec<u32>,
     /// Whether the set of each first is open, or not consistently oriented.
     is_open: Vec<bool>,
 }
 
-impl Sets {
+impl Bodies {
     /// The sets of all polygons. Those without area take part, since they fill the cracks that they were made for.
     pub fn new(polygons: &Polygons, repeated: &[bool]) -> Self {
         let mut uses = edge_uses(polygons, repeated);
         uses.par_sort_unstable();
-        let mut sets = DisjointSets::new(polygons.len());
+        let mut bodies = Sets::new(polygons.len());
         let mut open = Vec::new();
         for uses in uses.chunk_by(|a, b| a.edge == b.edge) {
             let first = uses[0].polygon;
             uses.iter()
-                .for_each(|other| sets.join(first, other.polygon));
+                .for_each(|other| bodies.join(first, other.polygon));
             let forward = uses.iter().filter(|edge_use| edge_use.forward).count();
             if 2 * forward != uses.len() {
                 open.push(first);
@@ -87,9 +88,9 @@ impl Sets {
         }
         let mut is_open = vec![false; polygons.len()];
         for polygon in open {
-            is_open[sets.root(polygon) as usize] = true;
+            is_open[bodies.root(polygon) as usize] = true;
         }
-        let roots = (0..polygons.len() as u32).map(|polygon| sets.root(polygon));
+        let roots = (0..polygons.len() as u32).map(|polygon| bodies.root(polygon));
         Self {
             roots: roots.collect(),
             is_open,
@@ -122,27 +123,4 @@ fn edge_uses(polygons: &Polygons, repeated: &[bool]) -> Vec<EdgeUse> {
         }));
     }
     uses
-}
-
-/// Union-find with path halving; the root of a set is its first polygon.
-struct DisjointSets(Vec<u32>);
-
-impl DisjointSets {
-    fn new(len: usize) -> Self {
-        DisjointSets((0..len as u32).collect())
-    }
-
-    fn root(&mut self, mut of: u32) -> u32 {
-        while self.0[of as usize] != of {
-            let above = self.0[of as usize];
-            self.0[of as usize] = self.0[above as usize];
-            of = self.0[of as usize];
-        }
-        of
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

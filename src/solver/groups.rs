@@ -2,8 +2,8 @@
 //!
 //! Where patches are smaller than the smallest element may be, there are more corners than the thresholds ask for. They are put in groups no
 //! larger than that element that face much the same way. A few of a group receive, its *nodes*, as far from one another as can be.
-//! Where the light at these differs by no more than ε_d, as at the corners of an element, the others take it by how near they are and
-//! how alike they face; elsewhere the group is halved.
+//! Where the light at these differs by little, as at the corners of an element that is not split, the others take it by how near they are
+//! and how alike they face; elsewhere the group is halved.
 
 use crate::form_factor::Gather;
 use crate::geometry::facing;

@@ -148,10 +148,10 @@ fn shine_from_both_sides(geometry: &mut Geometry, shining: &[u32]) {
     }
     let polygons = &mut geometry.polygons;
     let repeated = duplicates::find(polygons);
-    let sets = sides::Sets::new(polygons, &repeated);
+    let bodies = sides::Bodies::new(polygons, &repeated);
     for (polygon, repeated) in repeated.iter().enumerate() {
         let material = polygons.materials[polygon];
-        if shining.contains(&material) && !sets.is_closed(polygon as u32) && !repeated {
+        if shining.contains(&material) && !bodies.is_closed(polygon as u32) && !repeated {
             let back: Vec<u32> = polygons.corners(polygon).iter().rev().copied().collect();
             polygons.push(back, material);
             geometry.group_of.push(geometry.group_of[polygon]);
