@@ -3,9 +3,12 @@
 //!
 //! `cargo bench --bench form_factor`
 
-use glam::{DVec3, dvec3};
-use radiosity::form_factor::{point_to_disk, point_to_polygon, point_to_visible_polygon};
-use radiosity::geometry::{jitter, polygon};
+mod pairs;
+
+use glam::DVec3;
+use pairs::{Pair, across, clipped, pairs};
+use radiosity::form_factor::{point_to_disk, point_to_polygon};
+use radiosity::geometry::polygon;
 use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -14,16 +17,6 @@ use std::time::{Duration, Instant};
 const ROUNDS: usize = 401;
 /// How long a turn lasts, about: shorter than what the system hands to another program.
 const TURN: Duration = Duration::from_micros(500);
-/// Enough pairs that branches cannot be learnt by heart, few enough to stay in the first cache.
-const PAIRS: u32 = 128;
-
-/// A quad relative to the point that sees it, with what Eq. (1) needs precomputed as the solver does.
-struct Pair {
-    corners: [DVec3; 4],
-    to: DVec3,
-    normal: DVec3,
-    area: f64,
-}
 
 /// A name and a sum over all pairs.
 type Kernel = (&'static str, fn(&[Pair]) -> f64);
@@ -51,7 +44,7 @@ const KERNELS: [Kernel; 6] = [
 ];
 
 fn main() {
-    let pairs: Vec<Pair> = (0..PAIRS).map(pair).collect();
+    let pairs = pairs();
     check(&pairs);
     let mut times = [const { Vec::new() }; KERNELS.len()];
     let repeats = KERNELS.map(|(_, kernel)| repeats_in_a_turn(kernel, &pairs));
@@ -75,35 +68,9 @@ fn main() {
     }
 }
 
-/// A square at one to ten times its size, facing the point more or less, above its horizon.
-fn pair(key: u32) -> Pair {
-    let [[a, b], [c, d]] = [jitter(key, 0), jitter(key, 1)];
-    let centre = (1.0 + 9.0 * a) * dvec3(b - 0.5, c - 0.5, 1.0);
-    let u = dvec3(1.0, 0.0, 0.4 * (d - 0.5));
-    let v = dvec3(0.0, -1.0, 0.4 * (a - 0.5));
-    let corner = centre - 0.5 * (u + v);
-    let corners = [corner, corner + u, corner + u + v, corner + v];
-    let twice = polygon::vector_area(&corners);
-    Pair {
-        corners,
-        to: centre,
-        normal: twice.normalize(),
-        area: twice.length(),
-    }
-}
-
-/// A normal for which the horizon runs through the middle of the quad.
-fn across(pair: &Pair) -> DVec3 {
-    dvec3(pair.to.z, 0.0, -pair.to.x) * pair.to.length_recip()
-}
-
 #[inline(always)]
 fn sum(pairs: &[Pair], form_factor: impl Fn(&Pair) -> f64) -> f64 {
     pairs.iter().map(form_factor).sum()
-}
-
-fn clipped(normal: DVec3, pair: &Pair) -> f64 {
-    point_to_visible_polygon(normal, &pair.corners).0
 }
 
 /// Eq. (2) with the angle from `atan2` and the direction from a division, edge by edge.
