@@ -66,6 +66,8 @@ pub(super) enum Stage {
 pub(super) struct Bounce {
     /// What was unshot before it.
     pub unshot: Power,
+    /// By what it was multiplied in the bounce before it, if there was one.
+    pub ratio: Option<Spectrum>,
 }
 
 /// A shot that has arrived at the vertices there were, while the mesh is refined for it.

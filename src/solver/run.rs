@@ -212,7 +212,7 @@ impl<'a> Solver<'a> {
             return Some(StopReason::MaxShots);
         }
         if self.is_clustered() {
-            self.begin_wave(&powers);
+            self.begin_wave(&powers, bounce);
             return None;
         }
         let strongest = select(&powers);

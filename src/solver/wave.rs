@@ -27,6 +27,9 @@ pub(super) const EARLY: f64 = 6.0;
 /// A bounce is taken to be no stronger than this part of the one before it.
 const MOST_RATIO: f64 = 0.95;
 
+/// How much the ratio of a bounce to the one before it still grows, in units of how much it has grown last.
+const STILL_TO_GROW: f32 = 1.5;
+
 /// Light in a group may differ by this many times ε_d. In an element as small it may by more (see `size_exponent`), but that is flat.
 /// With 1 a draft of `staircase2` takes a seventh longer for the same error, with 25 its error grows by a third.
 const UNEVEN: f64 = 5.0;
@@ -78,7 +81,7 @@ impl<'a> Solver<'a> {
     }
 
     /// All that is unshot of the stronger sign sets out.
-    pub(super) fn begin_wave(&mut self, powers: &[Power]) {
+    pub(super) fn begin_wave(&mut self, powers: &[Power], after: Option<Bounce>) {
         let of = |sign: usize| {
             powers
                 .iter()
@@ -93,12 +96,13 @@ impl<'a> Solver<'a> {
         let tiling = self.tiling();
         let cells = tiling.unshot(&self.mesh, &self.light, sign);
         self.tiling = Some(tiling);
+        let ratio = after.map(|bounce| self.ratio(&bounce));
         if self.light.is_direct(sign) {
             // The mesh is refined: its neighbourhoods will be others.
             self.neighbourhoods = None;
             self.set_out(Kind::Unshot(sign), cells, power);
         } else {
-            self.bounce(sign, &cells, power);
+            self.bounce(sign, &cells, power, ratio);
         }
     }
 
@@ -112,15 +116,25 @@ impl<'a> Solver<'a> {
         self.set_out(Kind::Whole(prospect), cells, 1.0);
     }
 
-    /// How many times what is unshot is still to come. After a few bounces one is like the other, λ times as strong, and what follows
-    /// is λ + λ² + … = λ / (1 - λ).
+    /// How many times what is unshot is still to come: λ + λ² + … = λ / (1 - λ), were all that follow like a bounce that leaves λ times
+    /// what it shot. The first ones leave less than those after them, as what is bright for its neighbourhood goes first; the
+    /// ratios approach that of what lasts longest like a geometric series.
     fn prospect(&self, bounce: Option<Bounce>) -> Spectrum {
         let Some(bounce) = bounce else {
             return Spectrum::ZERO;
         };
+        let ratio = self.ratio(&bounce);
+        let growth = bounce.ratio.map_or(Spectrum::ZERO, |before| ratio - before);
+        let ratio = (ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO))
+            .min(Spectrum::splat(MOST_RATIO as f32));
+        ratio / (Spectrum::ONE - ratio)
+    }
+
+    /// What is unshot after a bounce over what was before it.
+    pub(super) fn ratio(&self, bounce: &Bounce) -> Spectrum {
         let before = bounce.unshot.abs().max(Power::splat(f64::MIN_POSITIVE));
         let ratio = (self.unshot().abs() / before).min(Power::splat(MOST_RATIO));
-        (ratio / (Power::ONE - ratio)).as_vec3()
+        ratio.as_vec3()
     }
 
     /// All light with nothing shot yet, `prospect` times what is unshot as if it had arrived.
