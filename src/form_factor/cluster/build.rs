@@ -43,6 +43,7 @@ impl Clusters {
             radiosity: vec![Spectrum::ZERO; tiles.len()],
             sends: vec![Sends::default(); nodes.len()],
             sums: vec![0.0; tiles.len() + 1],
+            steps: Vec::new(),
             tiles: order.iter().map(|tile| tiles[*tile as usize]).collect(),
             places,
             nodes,

@@ -6,6 +6,9 @@ use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
 use std::mem::take;
 
+/// See [`Clusters::tile_at`].
+const STEP: usize = 32;
+
 impl Clusters {
     /// Takes over the radiosity of each tile, in their order; `seed` draws the points that rays are aimed at.
     pub fn radiate(&mut self, radiosity: Vec<Spectrum>, seed: u32) {
@@ -20,6 +23,7 @@ impl Clusters {
             sum += f64::from(self.weight(tile as u32));
         }
         self.sums[self.tiles.len()] = sum;
+        self.steps = self.sums.iter().step_by(STEP).copied().collect();
         let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
         let roots = self.roots.iter().copied();
         let ends = roots.clone().skip(1).chain([nodes.len() as u32]);
@@ -79,14 +83,21 @@ impl Clusters {
     pub(super) fn draw(&self, number: u32, key: u32) -> Aim {
         let [draw, s] = jitter(key, number ^ self.seed);
         let node = &self.nodes[number as usize];
-        let sums = &self.sums[node.first as usize..=node.end as usize];
-        let passed = sums[0] + draw * (sums[sums.len() - 1] - sums[0]);
-        let place = sums
-            .partition_point(|sum| *sum <= passed)
-            .clamp(1, sums.len() - 1)
-            - 1;
-        let tile = node.first + place as u32;
+        let [before, all] = [node.first, node.end].map(|tile| self.sums[tile as usize]);
+        let tile = self.tile_at(node, before + draw * (all - before));
         self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
+    }
+
+    /// The tile of a cluster in which what all tiles send together reaches `passed`: first among every [`STEP`]th, which
+    /// stay in the cache.
+    fn tile_at(&self, node: &Node, passed: f64) -> u32 {
+        let (first, end) = (node.first as usize, node.end as usize);
+        let steps = first.div_ceil(STEP)..end / STEP + 1;
+        let step = steps.start + self.steps[steps.clone()].partition_point(|sum| *sum <= passed);
+        let begin = first.max((step * STEP).saturating_sub(STEP));
+        let reached = &self.sums[begin..=end.min(step * STEP)];
+        let place = begin + reached.partition_point(|sum| *sum <= passed);
+        place.clamp(first + 1, end) as u32 - 1
     }
 
     fn sent_by(&self, number: u32) -> Sends {

@@ -8,7 +8,7 @@ use crate::form_factor::hybrid::{Receiver, Sight, above_horizon, point_in_cut};
 use crate::form_factor::{Formula, Sampler};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
-use crate::simd::Kernel;
+use crate::simd::{Kernel, prefetch};
 use glam::Vec3;
 
 /// Parts that one point may gather before its thresholds are doubled; half as many more double them again.
@@ -28,7 +28,7 @@ const LARGE: f32 = 0.5;
 const PART_DRAWN: f64 = 0.5;
 
 /// … and where neighbours aim at the same place.
-const PART_SETTLED: f64 = 0.25;
+const PART_SETTLED: f64 = 1.0;
 
 /// Rays along each side of a tile that gives a point much.
 const MOST_RAYS: u32 = 4;
@@ -76,7 +76,7 @@ impl Kernel for Walk<'_> {
         let mut limits = self.limits(&rows, all);
         self.points.iter_mut().for_each(Found::clear);
         self.begin(all);
-        while let Some((number, asking)) = self.pending.pop() {
+        while let Some((number, asking)) = self.next() {
             let node = &self.clusters.nodes[number as usize];
             let sends = &self.clusters.sends[number as usize];
             let Some(views) = self.views(node, &rows, asking) else {
@@ -143,6 +143,18 @@ impl Walk<'_> {
         self.pending.extend(roots.map(|root| (*root, all)));
     }
 
+    /// The next cluster, and by whom it is asked. The walk would else wait for memory half of its time: what it will need of this one, and
+    /// the one after it if this one is not opened, is asked for now.
+    #[inline(always)]
+    fn next(&mut self) -> Option<(u32, Mask)> {
+        let next = self.pending.pop()?;
+        prefetch(&self.clusters.sends[next.0 as usize]);
+        if let Some((after, _)) = self.pending.last() {
+            prefetch(&self.clusters.nodes[*after as usize]);
+        }
+        Some(next)
+    }
+
     /// What those who ask see of a cluster, if any sees any of it.
     #[inline(always)]
     fn views(&self, node: &Node, rows: &Rows, asking: Mask) -> Option<Views> {
@@ -188,7 +200,7 @@ impl Walk<'_> {
     fn expected(&mut self, rows: &Rows, all: Mask) -> [Spectrum; LANES] {
         let mut sum = [Spectrum::ZERO; LANES];
         self.begin(all);
-        while let Some((number, asking)) = self.pending.pop() {
+        while let Some((number, asking)) = self.next() {
             let node = &self.clusters.nodes[number as usize];
             let sends = &self.clusters.sends[number as usize];
             let Some(views) = self.views(node, rows, asking) else {
