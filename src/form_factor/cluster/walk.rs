@@ -24,11 +24,8 @@ const GUESS: f32 = 1.0;
 /// A cluster that looks larger than this is opened, unless no more than ε_fd can arrive.
 const LARGE: f32 = 0.5;
 
-/// A cluster of which a point may see a part is taken if no more than this part of ε_fe can arrive: where draws differ and even out …
-const PART_DRAWN: f64 = 0.5;
-
-/// … and where neighbours aim at the same place.
-const PART_SETTLED: f64 = 1.0;
+/// A cluster of which a point may see a part is taken if no more than this part of ε_fe can arrive.
+const PART: f64 = 0.5;
 
 /// Rays along each side of a tile that gives a point much.
 const MOST_RAYS: u32 = 4;
@@ -182,13 +179,8 @@ impl Walk<'_> {
         let thresholds = &self.sampler.thresholds;
         let least = LEAST_KNOWN * thresholds.scale.reference as f32;
         let unit = known.map(|known| thresholds.scale.at(f64::from(known.max(least))));
-        let part = if self.settled {
-            PART_SETTLED
-        } else {
-            PART_DRAWN
-        };
         Limits {
-            part: unit.map(|unit| (part * thresholds.estimate * unit) as f32),
+            part: unit.map(|unit| (PART * thresholds.estimate * unit) as f32),
             difference: unit.map(|unit| (thresholds.difference * unit) as f32),
             estimate: unit.map(|unit| (thresholds.estimate * unit) as f32),
             most: [MOST; LANES],
