@@ -111,7 +111,7 @@ pub struct Clusters {
     roots: Vec<u32>,
     /// Σ area × mean radiosity of the tiles before each, and of all.
     sums: Vec<f64>,
-    /// Every few of them.
+    /// Every few of them, to look at first.
     steps: Vec<f64>,
     /// By how much the targets of rays are lifted off their tiles.
     offset: f32,
