@@ -234,9 +234,8 @@ impl<'a> Solver<'a> {
 
     /// What all patches have unshot, the negative subtracted.
     pub(super) fn unshot(&self) -> Power {
-        let powers = self.unshot_powers();
-        let sum = |sign: usize| powers.iter().skip(sign).step_by(2).sum::<Power>();
-        sum(0) - sum(1)
+        let [positive, negative] = by_sign(&self.unshot_powers());
+        positive - negative
     }
 
     pub(super) fn emitted(&self) -> Power {
@@ -293,6 +292,11 @@ fn part(stage: &Stage) -> fn(&mut Parts) -> &mut f64 {
             |parts| &mut parts.shooting
         }
     }
+}
+
+/// The positive of all unshot powers together, and the negative.
+pub(super) fn by_sign(powers: &[Power]) -> [Power; 2] {
+    [0, 1].map(|sign| powers.iter().skip(sign).step_by(2).sum())
 }
 
 /// The largest power; the first of equals.

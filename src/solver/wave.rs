@@ -10,7 +10,7 @@ use super::escape::Lost;
 use super::groups::Groups;
 use super::light::{Light, Sign};
 use super::observer::Phase;
-use super::run::Solver;
+use super::run::{Solver, by_sign};
 use super::shoot::{Beam, Shooter, evaluate, receiver_at, shoot_at};
 use super::tiling::Tiling;
 use crate::form_factor::{Gather, Sampler};
@@ -51,6 +51,15 @@ pub(super) struct Wave {
     pub arrived: Vec<Gather>,
 }
 
+impl Bounce {
+    /// What is `unshot` after it over what was before it.
+    fn ratio_to(&self, unshot: Power) -> Spectrum {
+        let before = self.unshot.abs().max(Power::splat(f64::MIN_POSITIVE));
+        let ratio = (unshot.abs() / before).min(Power::splat(MOST_RATIO));
+        ratio.as_vec3()
+    }
+}
+
 impl Wave {
     pub fn is_whole(&self) -> bool {
         matches!(self.kind, Kind::Whole(_))
@@ -83,27 +92,22 @@ impl<'a> Solver<'a> {
 
     /// All that is unshot of the stronger sign sets out.
     pub(super) fn begin_wave(&mut self, powers: &[Power], after: Option<Bounce>) {
-        let of = |sign: usize| {
-            powers
-                .iter()
-                .skip(sign)
-                .step_by(2)
-                .sum::<Power>()
-                .element_sum()
-        };
-        let sign = if of(0) >= of(1) { 0 } else { 1 };
-        let power = of(sign) / self.emitted().element_sum();
+        let unshot = by_sign(powers);
+        let of = unshot.map(Power::element_sum);
+        let sign = if of[0] >= of[1] { 0 } else { 1 };
+        let power = of[sign] / self.emitted().element_sum();
         let sign = Sign::ALL[sign];
         let tiling = self.tiling();
         let cells = tiling.unshot(&self.mesh, &self.light, sign);
         self.tiling = Some(tiling);
-        let ratio = after.map(|bounce| self.ratio(&bounce));
         if self.light.is_direct(sign) {
             // The mesh is refined: its neighbourhoods will be others.
             self.neighbourhoods = None;
             self.set_out(Kind::Unshot(sign), cells, power);
         } else {
-            self.bounce(sign, &cells, power, ratio);
+            let unshot = unshot[0] - unshot[1];
+            let ratio = after.map(|bounce| bounce.ratio_to(unshot));
+            self.bounce(sign, &cells, power, Bounce { unshot, ratio });
         }
     }
 
@@ -124,18 +128,11 @@ impl<'a> Solver<'a> {
         let Some(bounce) = bounce else {
             return Spectrum::ZERO;
         };
-        let ratio = self.ratio(&bounce);
+        let ratio = bounce.ratio_to(self.unshot());
         let growth = bounce.ratio.map_or(Spectrum::ZERO, |before| ratio - before);
         let ratio = (ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO))
             .min(Spectrum::splat(MOST_RATIO as f32));
         ratio / (Spectrum::ONE - ratio)
-    }
-
-    /// What is unshot after a bounce over what was before it.
-    pub(super) fn ratio(&self, bounce: &Bounce) -> Spectrum {
-        let before = bounce.unshot.abs().max(Power::splat(f64::MIN_POSITIVE));
-        let ratio = (self.unshot().abs() / before).min(Power::splat(MOST_RATIO));
-        ratio.as_vec3()
     }
 
     /// All light with nothing shot yet, `prospect` times what is unshot as if it had arrived.

@@ -25,7 +25,7 @@ const GUESS: f32 = 1.0;
 const LARGE: f32 = 0.5;
 
 /// A cluster of which a point may see a part is taken if no more than this part of ε_fe can arrive.
-const PART: f64 = 0.5;
+const PART: f32 = 0.5;
 
 /// Rays along each side of a tile that gives a point much.
 const MOST_RAYS: u32 = 4;
@@ -47,8 +47,6 @@ pub(super) struct Walk<'a> {
 struct Limits {
     difference: Row,
     estimate: Row,
-    /// Bound of a cluster that is taken in part.
-    part: Row,
     /// More parts than this double them.
     most: [usize; LANES],
 }
@@ -110,7 +108,7 @@ impl Limits {
         } = views;
         let slight = mask(|l| bound[l] <= difference[l]);
         let small = mask(|l| size[l] < LARGE);
-        let part = mask(|l| bound[l] <= self.part[l]) & seen & !whole;
+        let part = mask(|l| bound[l] <= PART * estimate[l]) & seen & !whole;
         let mut whole = (slight | small) & seen & whole;
         let mut arriving = [0.0; LANES];
         if whole != 0 {
@@ -180,7 +178,6 @@ impl Walk<'_> {
         let least = LEAST_KNOWN * thresholds.scale.reference as f32;
         let unit = known.map(|known| thresholds.scale.at(f64::from(known.max(least))));
         Limits {
-            part: unit.map(|unit| (PART * thresholds.estimate * unit) as f32),
             difference: unit.map(|unit| (thresholds.difference * unit) as f32),
             estimate: unit.map(|unit| (thresholds.estimate * unit) as f32),
             most: [MOST; LANES],
@@ -238,7 +235,6 @@ impl Walk<'_> {
                 limits.most[lane] += MOST / 2;
                 limits.difference[lane] *= 2.0;
                 limits.estimate[lane] *= 2.0;
-                limits.part[lane] *= 2.0;
             }
         }
     }
