@@ -7,6 +7,7 @@
 
 use super::{Mesh, NONE};
 use crate::radiometry::Spectrum;
+use rayon::prelude::*;
 
 /// How light is continued to the buried vertices of a mesh.
 #[derive(Debug, Clone, Default)]
@@ -43,18 +44,22 @@ impl Mesh {
         if !self.buried.contains(&true) {
             return;
         }
-        let mut edges: Vec<(u32, u32)> = Vec::new();
-        for leaf in self.leaves() {
-            for [centre, a, b] in self.fan(leaf) {
-                for (from, to) in [(centre, a), (a, b), (b, centre)] {
-                    for (buried, other) in [(from, to), (to, from)] {
-                        if self.buried[buried as usize] {
-                            edges.push((buried, other));
-                        }
-                    }
-                }
-            }
-        }
+        let is_buried = |vertex: &u32| self.buried[*vertex as usize];
+        let edges_of = |leaf: u32| {
+            let of = &self.elements[leaf as usize];
+            let hanging = of.hanging.iter().filter(|v| **v != NONE);
+            let any = of.vertices().any(|v| is_buried(&v)) || hanging.clone().any(is_buried);
+            let fan = any.then(|| self.fan(leaf)).into_iter().flatten();
+            fan.flat_map(|[centre, a, b]| [(centre, a), (a, b), (b, centre)])
+                .flat_map(|(from, to)| [(from, to), (to, from)])
+                .filter(|(from, _)| is_buried(from))
+        };
+        let mut edges: Vec<(u32, u32)> = (0..self.elements.len() as u32)
+            .into_par_iter()
+            .with_min_len(1024)
+            .filter(|e| self.elements[*e as usize].is_leaf())
+            .flat_map_iter(edges_of)
+            .collect();
         edges.sort_unstable();
         edges.dedup();
         let mut ring: Vec<u32> = self

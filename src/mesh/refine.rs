@@ -3,6 +3,7 @@
 use super::build::centre_of;
 use super::{Element, Lattice, Mesh, NONE, Patch, Vertex};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A vertex on the border of its patch is evaluated this fraction of the way to the centre of the element that made it.
 const INWARDS: f64 = 1e-3;
@@ -105,11 +106,15 @@ impl Mesh {
 
     /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.
     pub fn unbalanced(&self) -> Vec<u32> {
-        self.leaves()
-            .filter(|e| {
-                let element = &self.elements[*e as usize];
-                self.touched[element.patch as usize] && self.has_quarter_vertex(element)
-            })
+        let is_unbalanced = |element: &Element| {
+            element.is_leaf()
+                && self.touched[element.patch as usize]
+                && self.has_quarter_vertex(element)
+        };
+        let numbered = self.elements.par_iter().enumerate().with_min_len(1024);
+        numbered
+            .filter(|(_, element)| is_unbalanced(element))
+            .map(|(number, _)| number as u32)
             .collect()
     }
 
@@ -131,19 +136,21 @@ impl Mesh {
     /// Finds hanging vertices, and takes in which of the vertices from `first` on are buried (those not spoken of are open);
     /// to be called after splits, before light is interpolated.
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
-        for element in 0..self.elements.len() {
-            let of = self.elements[element];
-            if self.touched[of.patch as usize] {
+        let (vertices, at) = (&self.vertices, &self.at);
+        let middle = |patch: u32, a: u32, b: u32| {
+            let [a, b] = [a, b].map(|v| vertices[v as usize].lattice);
+            at.get(&(patch, a.midpoint(b))).copied().unwrap_or(NONE)
+        };
+        let touched = self.elements.par_iter_mut().with_min_len(1024);
+        touched
+            .filter(|of| self.touched[of.patch as usize])
+            .for_each(|of| {
                 let mut hanging = [NONE; 4];
                 for (side, a, b) in of.sides().filter(|_| of.is_leaf()) {
-                    let middle = self.vertices[a as usize]
-                        .lattice
-                        .midpoint(self.vertices[b as usize].lattice);
-                    hanging[side] = self.vertex_at(of.patch, middle).unwrap_or(NONE);
+                    hanging[side] = middle(of.patch, a, b);
                 }
-                self.elements[element].hanging = hanging;
-            }
-        }
+                of.hanging = hanging;
+            });
         self.touched.fill(false);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);

@@ -37,6 +37,13 @@ pub(super) struct Descent<'a> {
     pub rays: u64,
 }
 
+/// What arrives at the corners and the centre of an element.
+#[derive(Clone, Copy, Default)]
+struct Fan {
+    corners: [Gather; 4],
+    centre: Gather,
+}
+
 impl<'a> Descent<'a> {
     /// Nothing has arrived yet; nothing will at buried vertices.
     pub fn new(mesh: &'a Mesh, light: &'a Light, beam: Beam<'a>, options: &'a Options) -> Self {
@@ -67,8 +74,30 @@ impl<'a> Descent<'a> {
             let parts = |e: u32| self.mesh.elements[e as usize].parts();
             level = rough.into_iter().flat_map(parts).collect();
         }
+        let followers: Vec<Vec<(u32, Gather)>> = smooth
+            .par_iter()
+            .with_min_len(16)
+            .map(|element| {
+                let mut followers = Vec::new();
+                self.follow(*element, self.fan(*element), &mut followers);
+                followers
+            })
+            .collect();
         // The finest last: along a side that it shares with a coarser one, its values are the nearer ones.
-        smooth.into_iter().for_each(|element| self.follow(element));
+        for (vertex, gather) in followers.into_iter().flatten() {
+            self.arrived[vertex as usize] = gather;
+        }
+    }
+
+    /// What has arrived at the vertices of an element.
+    fn fan(&self, element: u32) -> Fan {
+        let of = &self.mesh.elements[element as usize];
+        let mut corners = [Gather::default(); 4];
+        for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
+            *corner = self.arrived[*vertex as usize];
+        }
+        let centre = self.arrived[of.centre as usize];
+        Fan { corners, centre }
     }
 
     /// Evaluates the shot at those vertices of elements that it has not arrived at.
@@ -115,25 +144,44 @@ impl<'a> Descent<'a> {
         distance < NEAR * self.mesh.longest_side(element)
     }
 
-    /// Gives the vertices of an element's parts what its fan has there: a corner of a part is a corner of the whole, its centre, or
+    /// Lists the vertices of an element's parts with what its fan has there: a corner of a part is a corner of the whole, its centre, or
     /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's.
-    fn follow(&mut self, element: u32) {
-        let mesh = self.mesh;
-        let whole = &mesh.elements[element as usize];
-        let corners = whole.corners();
-        for ((own, part), i) in corners.iter().zip(whole.parts()).zip(0..) {
-            let part = &mesh.elements[part as usize];
-            for j in [i + 1, i + corners.len() - 1].map(|j| j % corners.len()) {
-                self.halve(part.corners[j], [*own, corners[j]]);
-            }
-            self.halve(part.centre, [*own, whole.centre]);
+    fn follow(&self, element: u32, fan: Fan, followers: &mut Vec<(u32, Gather)>) {
+        let whole = &self.mesh.elements[element as usize];
+        if whole.is_leaf() {
+            return;
         }
-        whole.parts().for_each(|part| self.follow(part));
-    }
-
-    fn halve(&mut self, vertex: u32, ends: [u32; 2]) {
-        if !self.is_known[vertex as usize] {
-            self.arrived[vertex as usize] = Gather::mean(&ends.map(|v| self.arrived[v as usize]));
+        let mut halfway = |vertex: u32, ends: [Gather; 2]| {
+            if self.is_known[vertex as usize] {
+                return self.arrived[vertex as usize];
+            }
+            let gather = Gather::mean(&ends);
+            followers.push((vertex, gather));
+            gather
+        };
+        let count = whole.corners().len();
+        let after = |i: usize| (i + 1) % count;
+        let part = |i: usize| &self.mesh.elements[whole.children as usize + i];
+        let mut middles = [Gather::default(); 4];
+        let mut parts = [Fan::default(); 4];
+        for i in 0..count {
+            let side = [fan.corners[i], fan.corners[after(i)]];
+            middles[i] = halfway(part(i).corners[after(i)], side);
+            parts[i].centre = halfway(part(i).centre, [fan.corners[i], fan.centre]);
+        }
+        if count == 3 {
+            parts[3].corners[..3].copy_from_slice(&[middles[1], middles[2], middles[0]]);
+            parts[3].centre = fan.centre;
+        }
+        for i in 0..count {
+            let corners = &mut parts[i].corners;
+            corners.fill(fan.centre);
+            corners[i] = fan.corners[i];
+            corners[after(i)] = middles[i];
+            corners[(i + count - 1) % count] = middles[(i + count - 1) % count];
+        }
+        for (part, fan) in whole.parts().zip(parts) {
+            self.follow(part, fan, followers);
         }
     }
 }

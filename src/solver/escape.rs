@@ -63,7 +63,7 @@ pub(super) fn escaped(
     extent: f64,
 ) -> Lost {
     draws
-        .par_chunks(1024)
+        .par_chunks(256)
         .map(|chunk| {
             let open: Vec<&Draw> = chunk
                 .iter()

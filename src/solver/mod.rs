@@ -28,6 +28,7 @@ mod shoot;
 mod shot;
 mod source;
 mod tiling;
+mod volley;
 mod wave;
 
 pub use audit::{Audit, Span};

@@ -9,25 +9,11 @@ use super::course::{Gathering, Stage};
 use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
-use super::shoot::{Beam, Shooter};
-use crate::mesh::Mesh;
+use super::volley::{Giver, side_by_side};
 use crate::radiometry::{Power, Spectrum};
-use rayon::prelude::*;
 
-/// Patches whose light is gathered side by side …
-const SIDE_BY_SIDE: usize = 8;
-
-/// … unless together they would hold more values at vertices.
-const VALUES: usize = 1 << 22;
-
-/// What one patch gives to all others.
-struct Given {
-    irradiance: Vec<Spectrum>,
-    rays: u64,
-    lost: Lost,
-    /// What arrived and what escaped over what was sent, and what was sent, if that was much.
-    sum: Option<(f64, f64)>,
-}
+/// Of patches that send more than this part of what is emitted, it is known how much of that arrives or escapes.
+const MUCH: f64 = 1e-3;
 
 impl Solver<'_> {
     /// Nothing gathered yet.
@@ -48,16 +34,19 @@ impl Solver<'_> {
             Some(whole) => whole,
             None => self.whole(so_far.ambient),
         };
-        let power = |patch: u32| {
-            let power = whole.unshot_power(&self.mesh, patch as usize, Sign::Positive);
-            (patch, power.element_sum())
+        let giver = |patch: usize| Giver {
+            patch,
+            sign: Sign::Positive,
+            power: whole
+                .unshot_power(&self.mesh, patch, Sign::Positive)
+                .element_sum(),
         };
-        let next: Vec<(u32, f64)> = (so_far.next..self.mesh.patches.len() as u32)
-            .map(power)
-            .filter(|(_, sent)| *sent > 0.0)
+        let next: Vec<Giver> = (so_far.next as usize..self.mesh.patches.len())
+            .map(giver)
+            .filter(|giver| giver.power > 0.0)
             .take(side_by_side(&self.mesh))
             .collect();
-        let Some((last, _)) = next.last() else {
+        let Some(last) = next.last() else {
             let Gathering {
                 irradiance,
                 lost,
@@ -66,53 +55,21 @@ impl Solver<'_> {
             } = so_far;
             return self.take_over(irradiance, &whole, lost, sums);
         };
-        let given: Vec<Given> = next
-            .par_iter()
-            .with_max_len(1)
-            .map(|(patch, sent)| self.given(*patch as usize, *sent, &whole))
-            .collect();
-        for of in given {
+        let much = MUCH * self.emitted().element_sum();
+        for (giver, of) in next.iter().zip(self.given(&next, &whole)) {
             for (sum, irradiance) in so_far.irradiance.iter_mut().zip(&of.irradiance) {
                 *sum += *irradiance;
             }
             self.course.rays += of.rays;
             so_far.lost += of.lost;
-            so_far.sums.extend(of.sum);
+            if giver.power > much {
+                let arrived = (of.received + of.lost.all).element_sum();
+                so_far.sums.push((arrived / giver.power, giver.power));
+            }
         }
-        so_far.next = last + 1;
+        so_far.next = last.patch as u32 + 1;
         so_far.whole = Some(whole);
         self.course.stage = Stage::Gathering(so_far);
-    }
-
-    /// What a patch that sends the power `sent` gives to the others.
-    fn given(&self, patch: usize, sent: f64, whole: &Light) -> Given {
-        let power = sent / self.emitted().element_sum();
-        let sampler = self.sampler();
-        let source = self.source_of(whole, (patch, Sign::Positive), &sampler.thresholds);
-        let reached = self.reached(&source);
-        let shooter = Shooter::Patch(source);
-        let beam = Beam {
-            sampler: &sampler,
-            shooter: &shooter,
-            sign: Sign::Positive,
-        };
-        let (arrived, rays) = self.arrivals(beam, patch, &reached);
-        let irradiance: Vec<Spectrum> = arrived.into_iter().map(|g| g.irradiance).collect();
-        let received = irradiance.iter().zip(&self.mesh.weights);
-        let received: Power = received.map(|(e, w)| e.as_dvec3() * *w).sum();
-        let lost = self.escape(
-            patch,
-            &shooter,
-            power,
-            self.course.shots as u32 + patch as u32,
-        );
-        let sum = (received + lost.all).element_sum() / sent;
-        Given {
-            irradiance,
-            rays,
-            lost,
-            sum: (power > 1e-3).then_some((sum, sent)),
-        }
     }
 
     /// What was gathered from `whole` replaces what there was.
@@ -152,8 +109,4 @@ impl Solver<'_> {
             .recip()
             .as_vec3()
     }
-}
-
-fn side_by_side(mesh: &Mesh) -> usize {
-    (VALUES / mesh.vertices.len().max(1)).clamp(1, SIDE_BY_SIDE)
 }

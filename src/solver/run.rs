@@ -218,8 +218,18 @@ impl<'a> Solver<'a> {
         let strongest = select(&powers);
         self.laps.lap(|parts| &mut parts.selecting);
         let power = powers[strongest].element_sum() / emitted;
-        self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
+        if self.meshes(power) {
+            self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
+        } else {
+            let most = self.options.max_shots.map_or(u64::MAX, |most| most - shots);
+            self.volley(&powers, usize::try_from(most).unwrap_or(usize::MAX));
+        }
         None
+    }
+
+    /// Whether a shot of such a fraction of the emitted power tests the mesh.
+    pub(super) fn meshes(&self, power: f64) -> bool {
+        power >= self.options.meshing_power && self.course.meshing_ended.is_none()
     }
 
     /// By patch, first the positive, then the negative.

@@ -5,9 +5,15 @@ use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
+use std::cell::RefCell;
 
 /// Vertices that are evaluated together: enough to fill packets on every level of the source, few enough to share out.
 const BLOCK: usize = 32;
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static CLUSTER_SCRATCH: RefCell<ClusterScratch> = RefCell::default();
+}
 
 /// What shoots.
 #[derive(Debug, Clone)]
@@ -33,25 +39,20 @@ pub(super) fn evaluate(
     shooter: &Shooter,
     points: &[(Receiver, u32)],
 ) -> (Vec<Gather>, u64) {
-    let chunks = points.par_chunks(BLOCK);
-    let blocks: Vec<(Vec<Gather>, u64)> = match shooter {
-        Shooter::Patch(source) => chunks
-            .map_init(Scratch::default, |scratch, block| {
-                let mut gathers = Vec::with_capacity(block.len());
-                let rays = sampler.gather(source, block, scratch, &mut gathers);
-                (gathers, rays)
-            })
-            .collect(),
-        Shooter::All { tiling, settled } => chunks
-            .map_init(ClusterScratch::default, |scratch, block| {
-                let mut gathers = Vec::with_capacity(block.len());
-                let clusters = &tiling.clusters;
-                let rays =
-                    sampler.gather_clusters(clusters, block, *settled, scratch, &mut gathers);
-                (gathers, rays)
-            })
-            .collect(),
+    // Each block a task of its own: of several together, one thread would still be at the last ones when nothing is left for the others.
+    let chunks = points.par_chunks(BLOCK).with_max_len(1);
+    let gather = |block: &[(Receiver, u32)]| {
+        let mut gathers = Vec::with_capacity(block.len());
+        let rays = match shooter {
+            Shooter::Patch(source) => SCRATCH
+                .with_borrow_mut(|scratch| sampler.gather(source, block, scratch, &mut gathers)),
+            Shooter::All { tiling, settled } => CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
+                sampler.gather_clusters(&tiling.clusters, block, *settled, scratch, &mut gathers)
+            }),
+        };
+        (gathers, rays)
     };
+    let blocks: Vec<(Vec<Gather>, u64)> = chunks.map(gather).collect();
     let rays = blocks.iter().map(|(_, rays)| rays).sum();
     (
         blocks

@@ -14,7 +14,7 @@ use crate::radiometry::Spectrum;
 use glam::DVec3;
 
 impl<'a> Solver<'a> {
-    /// Adds the contribution of one patch to all vertices that there are.
+    /// Adds the contribution of one patch to all vertices that there are; the mesh is to be refined for it.
     pub(super) fn shoot_from(&mut self, shooter: usize, sign: Sign, power: f64) {
         let sampler = self.sampler();
         let from = (shooter, sign);
@@ -45,20 +45,14 @@ impl<'a> Solver<'a> {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
         }
-        let meshes = power >= self.options.meshing_power && self.course.meshing_ended.is_none();
-        if meshes {
-            let elements = self.mesh.leaves();
-            let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
-            shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
-            let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
-            self.course.rays += rays;
-            shot.feelers = found;
-            shot.made = Some(shooting);
-            self.course.stage = Stage::Refining(shot);
-        } else {
-            shot.made = Some(shooting);
-            self.end_shot(shot);
-        }
+        let elements = self.mesh.leaves();
+        let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
+        shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
+        let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
+        self.course.rays += rays;
+        shot.feelers = found;
+        shot.made = Some(shooting);
+        self.course.stage = Stage::Refining(shot);
     }
 
     /// One pass of refinement for what a shot gave.

@@ -266,8 +266,7 @@ impl<'a> Solver<'a> {
             self.light.irradiance[vertex] += gather.irradiance;
             self.light.unshot[vertex] += gather.irradiance;
         }
-        let meshes =
-            wave.power >= self.options.meshing_power && self.course.meshing_ended.is_none();
+        let meshes = self.meshes(wave.power);
         let shot = self.arrived(wave, sign, meshes);
         if meshes {
             self.course.stage = Stage::Refining(shot);
