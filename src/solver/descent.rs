@@ -145,12 +145,9 @@ impl<'a> Descent<'a> {
     }
 
     /// Lists the vertices of an element's parts with what its fan has there: a corner of a part is a corner of the whole, its centre, or
-    /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's.
+    /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's. No leaf is asked.
     fn follow(&self, element: u32, fan: Fan, followers: &mut Vec<(u32, Gather)>) {
         let whole = &self.mesh.elements[element as usize];
-        if whole.is_leaf() {
-            return;
-        }
         let mut halfway = |vertex: u32, ends: [Gather; 2]| {
             if self.is_known[vertex as usize] {
                 return self.arrived[vertex as usize];
@@ -161,27 +158,31 @@ impl<'a> Descent<'a> {
         };
         let count = whole.corners().len();
         let after = |i: usize| (i + 1) % count;
+        let before = |i: usize| (i + count - 1) % count;
         let part = |i: usize| &self.mesh.elements[whole.children as usize + i];
         let mut middles = [Gather::default(); 4];
-        let mut parts = [Fan::default(); 4];
+        // A triangle's fourth part has the whole's own centre.
+        let mut centres = [fan.centre; 4];
         for i in 0..count {
             let side = [fan.corners[i], fan.corners[after(i)]];
             middles[i] = halfway(part(i).corners[after(i)], side);
-            parts[i].centre = halfway(part(i).centre, [fan.corners[i], fan.centre]);
+            centres[i] = halfway(part(i).centre, [fan.corners[i], fan.centre]);
         }
-        if count == 3 {
-            parts[3].corners[..3].copy_from_slice(&[middles[1], middles[2], middles[0]]);
-            parts[3].centre = fan.centre;
-        }
-        for i in 0..count {
-            let corners = &mut parts[i].corners;
-            corners.fill(fan.centre);
-            corners[i] = fan.corners[i];
-            corners[after(i)] = middles[i];
-            corners[(i + count - 1) % count] = middles[(i + count - 1) % count];
-        }
-        for (part, fan) in whole.parts().zip(parts) {
-            self.follow(part, fan, followers);
+        for i in (0..4).filter(|i| !part(*i).is_leaf()) {
+            let mut corners = [fan.centre; 4];
+            if i < count {
+                corners[i] = fan.corners[i];
+                corners[after(i)] = middles[i];
+                corners[before(i)] = middles[before(i)];
+            } else {
+                corners[..3].copy_from_slice(&[middles[1], middles[2], middles[0]]);
+            }
+            let centre = centres[i];
+            self.follow(
+                whole.children + i as u32,
+                Fan { corners, centre },
+                followers,
+            );
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Irradiance at the vertices, and what of it has not been shot.
@@ -83,6 +84,16 @@ impl Light {
     pub(super) fn is_direct(&self, sign: Sign) -> bool {
         let unshot = |exitance: &Spectrum| sign.part(*exitance) != Spectrum::ZERO;
         self.exitance_unshot.iter().any(unshot)
+    }
+
+    /// Adds what arrives at each vertex, all of it unshot.
+    pub(super) fn receive(&mut self, arrived: impl IndexedParallelIterator<Item = Spectrum>) {
+        let light = self.irradiance.par_iter_mut().zip(&mut self.unshot);
+        let light = light.zip(arrived).with_min_len(4096);
+        light.for_each(|((irradiance, unshot), arrived)| {
+            *irradiance += arrived;
+            *unshot += arrived;
+        });
     }
 
     /// Marks everything of one sign as shot.

@@ -12,6 +12,7 @@ use super::source::{cells_of, source_from};
 use crate::form_factor::{Cell, Gather, Sampler, Source};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
+use rayon::prelude::*;
 
 impl<'a> Solver<'a> {
     /// Adds the contribution of one patch to all vertices that there are; the mesh is to be refined for it.
@@ -41,10 +42,8 @@ impl<'a> Solver<'a> {
         let rays;
         (shot.arrived, rays) = self.arrivals(beam, shooter, &reached);
         self.course.rays += rays;
-        for (vertex, gather) in shot.arrived.iter().enumerate() {
-            self.light.irradiance[vertex] += gather.irradiance;
-            self.light.unshot[vertex] += gather.irradiance;
-        }
+        self.light
+            .receive(shot.arrived.par_iter().map(|g| g.irradiance));
         let elements = self.mesh.leaves();
         let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
         shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
@@ -77,7 +76,7 @@ impl<'a> Solver<'a> {
             shot.candidates.clear();
         }
         if shot.candidates.is_empty() {
-            return;
+            return self.weigh();
         }
         let mut refinement = Refinement {
             beam: Beam {
@@ -96,7 +95,16 @@ impl<'a> Solver<'a> {
         };
         shot.candidates = refinement.pass(&shot.candidates);
         self.course.rays += refinement.rays;
-        self.mesh.integrate();
+        if shot.candidates.is_empty() {
+            self.weigh();
+        }
+    }
+
+    /// Finds what new vertices stand for, if there are any; not asked for before refinement is over.
+    pub(super) fn weigh(&mut self) {
+        if self.mesh.weights.len() < self.mesh.vertices.len() {
+            self.mesh.integrate();
+        }
     }
 
     /// What shoots; made anew from what is kept of it, if need be.

@@ -85,16 +85,8 @@ impl Solver<'_> {
         for giver in &givers {
             self.light.take(&self.mesh, giver.patch, giver.sign);
         }
-        let Light {
-            irradiance, unshot, ..
-        } = &mut self.light;
-        for of in &given {
-            for (sum, irradiance) in irradiance.iter_mut().zip(&of.irradiance) {
-                *sum += *irradiance;
-            }
-            for (sum, irradiance) in unshot.iter_mut().zip(&of.irradiance) {
-                *sum += *irradiance;
-            }
+        for of in given {
+            self.light.receive(of.irradiance.into_par_iter());
             self.course.rays += of.rays;
             self.course.lost += of.lost;
         }

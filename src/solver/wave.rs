@@ -16,6 +16,7 @@ use super::tiling::Tiling;
 use crate::form_factor::{Gather, Sampler};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Vertices that a wave arrives at between two looks at the observer.
@@ -262,10 +263,8 @@ impl<'a> Solver<'a> {
 
     fn arrive_unshot(&mut self, wave: Wave, sign: Sign) {
         self.light.take_all(&self.mesh, sign);
-        for (vertex, gather) in wave.arrived.iter().enumerate() {
-            self.light.irradiance[vertex] += gather.irradiance;
-            self.light.unshot[vertex] += gather.irradiance;
-        }
+        self.light
+            .receive(wave.arrived.par_iter().map(|g| g.irradiance));
         let meshes = self.meshes(wave.power);
         let shot = self.arrived(wave, sign, meshes);
         if meshes {
