@@ -119,7 +119,6 @@ impl<'a> Solver<'a> {
     /// Goes on until there is a reason to stop; keeps `observer` informed.
     pub fn run(mut self, observer: &mut dyn Observer) -> Outcome {
         let stop_reason = self.advance(observer);
-        self.weigh();
         let audit = match stop_reason {
             StopReason::NoEmitter | StopReason::Interrupted => None,
             _ => self.audit(),
@@ -254,11 +253,8 @@ impl<'a> Solver<'a> {
     }
 
     fn progress(&mut self) -> Progress {
-        // Until a wave, or all light, has arrived everywhere, the light is what it was; while the mesh is refined, nearly.
-        let stays = !matches!(
-            self.course.stage,
-            Stage::Shooting | Stage::Bounced(_) | Stage::Finished
-        );
+        // Until a wave, or all light, has arrived everywhere, the light is what it was.
+        let stays = matches!(self.course.stage, Stage::Waving(_) | Stage::Gathering(_));
         let known = self.unshot.filter(|_| stays);
         let unshot = known.unwrap_or_else(|| self.unshot_powers().iter().sum());
         self.unshot = Some(unshot);

@@ -76,7 +76,7 @@ impl<'a> Solver<'a> {
             shot.candidates.clear();
         }
         if shot.candidates.is_empty() {
-            return self.weigh();
+            return;
         }
         let mut refinement = Refinement {
             beam: Beam {
@@ -95,13 +95,6 @@ impl<'a> Solver<'a> {
         };
         shot.candidates = refinement.pass(&shot.candidates);
         self.course.rays += refinement.rays;
-        if shot.candidates.is_empty() {
-            self.weigh();
-        }
-    }
-
-    /// Finds what new vertices stand for, if there are any; not asked for before refinement is over.
-    pub(super) fn weigh(&mut self) {
         if self.mesh.weights.len() < self.mesh.vertices.len() {
             self.mesh.integrate();
         }

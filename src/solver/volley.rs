@@ -70,17 +70,7 @@ impl Solver<'_> {
 
     /// Shots from the strongest of `powers` and from others nearly as strong, `most` at the most; none of them tests the mesh.
     pub(super) fn volley(&mut self, powers: &[Power], most: usize) {
-        let giver = |(of, power): (usize, &Power)| Giver {
-            patch: of / 2,
-            sign: Sign::ALL[of % 2],
-            power: power.element_sum(),
-        };
-        let mut givers: Vec<Giver> = powers.iter().enumerate().map(giver).collect();
-        givers.sort_by(|a, b| b.power.total_cmp(&a.power));
-        let least = ALONGSIDE * givers[0].power;
-        givers.truncate(most.min(side_by_side(&self.mesh)));
-        givers.retain(|giver| giver.power >= least);
-
+        let givers = strongest(powers, most.min(side_by_side(&self.mesh)));
         let given = self.given(&givers, &self.light);
         for giver in &givers {
             self.light.take(&self.mesh, giver.patch, giver.sign);
@@ -94,7 +84,83 @@ impl Solver<'_> {
     }
 }
 
+/// The strongest of `powers`, by patch and sign, and those nearly as strong, `most` at the most.
+fn strongest(powers: &[Power], most: usize) -> Vec<Giver> {
+    let giver = |(of, power): (usize, &Power)| Giver {
+        patch: of / 2,
+        sign: Sign::ALL[of % 2],
+        power: power.element_sum(),
+    };
+    let mut givers: Vec<Giver> = powers.iter().enumerate().map(giver).collect();
+    givers.sort_by(|a, b| b.power.total_cmp(&a.power));
+    givers.truncate(most);
+    let least = ALONGSIDE * givers.first().map_or(0.0, |giver| giver.power);
+    givers.retain(|giver| giver.power >= least);
+    givers
+}
+
 /// How many patches may give their light at once.
 pub(super) fn side_by_side(mesh: &Mesh) -> usize {
     (VALUES / mesh.vertices.len().max(1)).clamp(1, SIDE_BY_SIDE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::solver::options::Preset;
+    use crate::solver::{Course, Options, Silent, occluders};
+    use crate::visibility::{EngineChoice, build};
+    use std::path::Path;
+    use std::time::Duration;
+
+    #[test]
+    fn what_shots_of_a_volley_give_one_another_stays_unshot() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box");
+        let scene = Scene::load(&folder).expect("it is there");
+        let options = Options {
+            max_shots: Some(20),
+            audit_points: 0,
+            ..Preset::Draft.options()
+        };
+        let mesh = Mesh::new(&scene, options.limits);
+        let engine = build(EngineChoice::Obvhs, &occluders(&scene, &mesh), 0).expect("it can");
+        let lit = Solver::new(&scene, mesh, &*engine, options.clone()).run(&mut Silent);
+        let state = (lit.mesh, lit.light, Course::default());
+        let mut solver = Solver::resume(&scene, state, &*engine, options, Duration::ZERO);
+
+        let powers: Vec<Power> = (0..2 * solver.mesh.patches.len())
+            .map(|of| {
+                let light = &solver.light;
+                light.unshot_power(&solver.mesh, of / 2, Sign::ALL[of % 2])
+            })
+            .collect();
+        let givers = strongest(&powers, SIDE_BY_SIDE);
+        assert!(givers.len() > 1, "{givers:?}");
+        let mut expected = solver.light.clone();
+        for giver in &givers {
+            expected.take(&solver.mesh, giver.patch, giver.sign);
+        }
+        for giver in &givers {
+            let given = solver.given(&[*giver], &solver.light).remove(0);
+            expected.receive(given.irradiance.into_par_iter());
+        }
+        solver.volley(&powers, SIDE_BY_SIDE);
+        assert_eq!(solver.light, expected);
+        assert_eq!(solver.course.shots, givers.len() as u64);
+        let left = |of: &Giver| solver.light.unshot_power(&solver.mesh, of.patch, of.sign);
+        assert!(givers.iter().any(|of| left(of).element_sum() > 0.0));
+    }
+
+    #[test]
+    fn only_what_is_nearly_as_strong_shoots_along() {
+        let powers = [0.1, 0.0, 1.0, 0.0, 0.6, 0.0, 0.49, 0.0, 0.9].map(Power::splat);
+        let patches = |most| {
+            let givers = strongest(&powers, most);
+            givers.iter().map(|g| g.patch).collect::<Vec<_>>()
+        };
+        assert_eq!(patches(8), [1, 4, 2]);
+        assert_eq!(patches(2), [1, 4]);
+        assert_eq!(patches(1), [1]);
+    }
 }
