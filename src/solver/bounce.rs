@@ -12,7 +12,7 @@ use super::shoot::{Beam, evaluate, receiver_at};
 use super::tiling::SIZE;
 use crate::form_factor::Gather;
 use crate::geometry::{facing, jitter};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NONE};
 use crate::radiometry::Spectrum;
 use crate::visibility::Visibility;
 use glam::Vec3;
@@ -33,6 +33,8 @@ pub(super) struct Neighbourhoods {
     vertices: Vec<u32>,
     /// Where in `vertices` each ends.
     ends: Vec<u32>,
+    /// In which each vertex is; none that is buried is in any.
+    of: Vec<u32>,
 }
 
 impl Neighbourhoods {
@@ -67,8 +69,12 @@ impl Neighbourhoods {
         let mut near = Self {
             vertices: Vec::with_capacity(keyed.len()),
             ends: Vec::new(),
+            of: vec![NONE; mesh.vertices.len()],
         };
         for vertices in cubes.iter().flatten() {
+            for vertex in vertices {
+                near.of[*vertex as usize] = near.ends.len() as u32;
+            }
             near.vertices.extend(vertices);
             near.ends.push(near.vertices.len() as u32);
         }
@@ -159,14 +165,12 @@ impl Solver<'_> {
         let neighbourhoods =
             neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh, self.visibility));
         let arrived = self.arrivals_near(beam, &neighbourhoods);
-        self.light.take_all(&self.mesh, sign);
-        for (gather, vertices) in arrived.iter().zip(neighbourhoods.iter()) {
-            let irradiance = gather.irradiance * sign.factor();
-            for vertex in vertices {
-                self.light.irradiance[*vertex as usize] += irradiance;
-                self.light.unshot[*vertex as usize] += irradiance;
-            }
-        }
+        self.light.take_all(sign);
+        let at = neighbourhoods.of.par_iter().map(|near| match *near {
+            NONE => Spectrum::ZERO,
+            near => arrived[near as usize].irradiance * sign.factor(),
+        });
+        self.light.receive(at);
         self.mesh
             .continue_to_buried(&mut self.light.irradiance, |e| e, 0);
         self.mesh
@@ -182,8 +186,10 @@ impl Solver<'_> {
     /// What arrives at one vertex of each neighbourhood.
     fn arrivals_near(&mut self, beam: Beam, near: &Neighbourhoods) -> Vec<Gather> {
         let seed = self.course.shots as u32;
+        let near: Vec<&[u32]> = near.iter().collect();
         let receivers: Vec<_> = near
-            .iter()
+            .par_iter()
+            .with_min_len(64)
             .map(|vertices| drawn(&self.mesh, vertices, seed))
             .map(|vertex| receiver_at(&self.mesh, &self.light, vertex))
             .collect();

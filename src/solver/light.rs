@@ -42,6 +42,11 @@ impl Sign {
     fn part(self, of: Spectrum) -> Spectrum {
         (of * self.factor()).max(Spectrum::ZERO)
     }
+
+    /// Takes that part away.
+    fn take(self, from: &mut Spectrum) {
+        *from -= self.part(*from) * self.factor();
+    }
 }
 
 impl Light {
@@ -97,16 +102,18 @@ impl Light {
     }
 
     /// Marks everything of one sign as shot.
-    pub(super) fn take_all(&mut self, mesh: &Mesh, sign: Sign) {
-        (0..mesh.patches.len()).for_each(|patch| self.take(mesh, patch, sign));
+    pub(super) fn take_all(&mut self, sign: Sign) {
+        let unshot = self.unshot.par_iter_mut().chain(&mut self.exitance_unshot);
+        unshot
+            .with_min_len(4096)
+            .for_each(|unshot| sign.take(unshot));
     }
 
     /// Marks everything of one sign of a patch as shot.
     pub fn take(&mut self, mesh: &Mesh, patch: usize, sign: Sign) {
-        let take = |unshot: &mut Spectrum| *unshot -= sign.part(*unshot) * sign.factor();
-        take(&mut self.exitance_unshot[patch]);
+        sign.take(&mut self.exitance_unshot[patch]);
         for vertex in &mesh.patches[patch].vertices {
-            take(&mut self.unshot[*vertex as usize]);
+            sign.take(&mut self.unshot[*vertex as usize]);
         }
     }
 }

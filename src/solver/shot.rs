@@ -211,8 +211,9 @@ impl<'a> Solver<'a> {
     /// Of each patch, whether all its vertices are open.
     fn patches_without_buried(&self) -> Vec<bool> {
         let mut is_whole = vec![true; self.mesh.patches.len()];
-        for (vertex, is_buried) in self.mesh.vertices.iter().zip(&self.mesh.buried) {
-            is_whole[vertex.patch as usize] &= !is_buried;
+        let buried = self.mesh.buried.iter().zip(&self.mesh.vertices);
+        for (_, vertex) in buried.filter(|(is_buried, _)| **is_buried) {
+            is_whole[vertex.patch as usize] = false;
         }
         is_whole
     }

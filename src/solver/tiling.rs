@@ -31,7 +31,7 @@ impl Tiling {
             let tiles: Vec<Tile> = cells.iter().map(|cell| tile(patch, cell)).collect();
             tiles
         };
-        let tiles = mesh.patches.iter().zip(&levels).flat_map(of_patch);
+        let tiles = mesh.patches.par_iter().zip(&levels).flat_map_iter(of_patch);
         Self {
             clusters: Clusters::new(tiles.collect(), mesh.frame.extent()),
             levels,

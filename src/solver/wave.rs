@@ -262,7 +262,7 @@ impl<'a> Solver<'a> {
     }
 
     fn arrive_unshot(&mut self, wave: Wave, sign: Sign) {
-        self.light.take_all(&self.mesh, sign);
+        self.light.take_all(sign);
         self.light
             .receive(wave.arrived.par_iter().map(|g| g.irradiance));
         let meshes = self.meshes(wave.power);

@@ -4,6 +4,7 @@ use super::{Aim, Clusters, Node, Sends, on_both};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
+use rayon::prelude::*;
 use std::mem::take;
 
 /// Of the sums that [`Clusters::tile_at`] looks at first, one in so many.
@@ -17,12 +18,18 @@ impl Clusters {
             self.radiosity[*place as usize] = radiosity;
         }
         self.seed = seed;
+        let mut sums = take(&mut self.sums);
+        let weights = (0..self.tiles.len() as u32)
+            .into_par_iter()
+            .with_min_len(4096)
+            .map(|tile| f64::from(self.weight(tile)));
+        weights.collect_into_vec(&mut sums);
         let mut sum = 0.0;
-        for tile in 0..self.tiles.len() {
-            self.sums[tile] = sum;
-            sum += f64::from(self.weight(tile as u32));
+        for before in &mut sums {
+            sum += std::mem::replace(before, sum);
         }
-        self.sums[self.tiles.len()] = sum;
+        sums.push(sum);
+        self.sums = sums;
         self.steps = self.sums.iter().step_by(STEP).copied().collect();
         let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
         let roots = self.roots.iter().copied();
