@@ -154,7 +154,7 @@ fn drawn(mesh: &Mesh, of: &[u32], seed: u32) -> u32 {
 impl Solver<'_> {
     /// What sets out as `cells` arrives at all neighbourhoods; `before` is how it was.
     pub(super) fn bounce(&mut self, sign: Sign, cells: &[Spectrum], power: f64, before: Bounce) {
-        let shooter = self.radiating(cells, false);
+        let shooter = self.radiating(cells, true);
         let sampler = self.coarse_sampler();
         let beam = Beam {
             sampler: &sampler,

@@ -16,7 +16,7 @@ const MOST: usize = 2048;
 
 /// Light that is known to be there counts at least this part of the scene's reference: where it is dark, thresholds need not follow
 /// the light to nothing.
-const LEAST_KNOWN: f32 = 0.1;
+const LEAST_KNOWN: f32 = 0.4;
 
 /// A cluster that looks larger than this, radius over distance, is not taken whole for the first guess of the light at a point.
 const GUESS: f32 = 1.0;
