@@ -1,6 +1,6 @@
 //! What a mesh receives: the weights with which values at vertices are integrated.
 
-use super::{Element, Mesh};
+use super::{Element, Mesh, NONE};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -14,17 +14,16 @@ impl Mesh {
     /// Computes the weights; to be called after [`Self::finish_topology`].
     pub fn integrate(&mut self) {
         let mut weights = vec![0.0; self.vertices.len()];
-        let positions: Vec<DVec3> = (0..self.vertices.len() as u32)
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|v| self.position(v))
-            .collect();
-        let at = |v: u32| positions[v as usize];
         let triangles = |of: &Element| {
-            let centre = at(of.centre);
-            let area = |a, b| (at(a) - centre).cross(at(b) - centre).length() / 2.0;
+            let centre = self.position(of.centre);
+            let arms = of.corners.map(|corner| match corner {
+                NONE => DVec3::ZERO,
+                corner => self.position(corner) - centre,
+            });
+            let count = of.corners().len();
+            let area = |i: usize| arms[i].cross(arms[(i + 1) % count]).length() / 2.0;
             let mut areas = [0.0; 4];
-            of.sides().for_each(|(i, a, b)| areas[i] = area(a, b));
+            (0..count).for_each(|i| areas[i] = area(i));
             areas
         };
         let areas: Vec<[f64; 4]> = self

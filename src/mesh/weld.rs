@@ -55,8 +55,13 @@ impl Mesh {
             leader: (0..self.vertices.len() as u32).collect(),
             ..Weld::default()
         };
-        for site in sites.groups() {
-            self.settle(&site, &mut weld);
+        let sites = sites.groups();
+        let settled: Vec<_> = sites.par_iter().map(|site| self.settled(site)).collect();
+        for (site, settled) in sites.iter().zip(settled) {
+            if let Some(settled) = settled {
+                weld.sites.insert(site[0], settled);
+                site.iter().for_each(|v| weld.leader[*v as usize] = site[0]);
+            }
         }
         for patch in self.patches.iter().filter(|patch| self.is_small(patch)) {
             let root = patch.roots.start;
@@ -177,8 +182,8 @@ impl Mesh {
         facing && (curved || is_small(a) && is_small(b)) && a.exitance == b.exitance
     }
 
-    /// Makes one of the corners in a site.
-    fn settle(&self, site: &[u32], weld: &mut Weld) {
+    /// Where and with which normal the corners in a site receive as one, if they can.
+    fn settled(&self, site: &[u32]) -> Option<(DVec3, Vec3)> {
         let patch_of = |v: &u32| &self.patches[self.vertices[*v as usize].patch as usize];
         let position = self.position(site[0]);
         let normal: DVec3 = site
@@ -187,7 +192,7 @@ impl Mesh {
             .sum();
         let normal = normal.normalize_or_zero();
         if site.iter().any(|v| patch_of(v).normal.dot(normal) < FACING) {
-            return;
+            return None;
         }
         let moved = site
             .iter()
@@ -196,10 +201,7 @@ impl Mesh {
         // Not below any of its patches.
         let below = |v: &u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);
         let up = site.iter().map(below).fold(0.0, f64::max);
-        let leader = site[0];
-        let point = position + mean + normal * up;
-        weld.sites.insert(leader, (point, normal.as_vec3()));
-        site.iter().for_each(|v| weld.leader[*v as usize] = leader);
+        Some((position + mean + normal * up, normal.as_vec3()))
     }
 
     /// The normal inside a patch whose corners have normals of their own.

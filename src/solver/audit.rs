@@ -71,6 +71,9 @@ impl Span {
 impl Solver<'_> {
     /// Looks again at `options.audit_points` points; `None` if that is 0 or there is no light.
     pub(super) fn audit(&mut self) -> Option<Audit> {
+        if self.options.audit_points == 0 {
+            return None;
+        }
         let places = places(&self.mesh, self.options.audit_points);
         if places.is_empty() {
             return None;

@@ -155,7 +155,7 @@ impl Solver<'_> {
     /// What sets out as `cells` arrives at all neighbourhoods; `before` is how it was.
     pub(super) fn bounce(&mut self, sign: Sign, cells: &[Spectrum], power: f64, before: Bounce) {
         let shooter = self.radiating(cells, true);
-        let sampler = self.coarse_sampler();
+        let sampler = self.sampler();
         let beam = Beam {
             sampler: &sampler,
             shooter: &shooter,

@@ -13,7 +13,7 @@ use super::observer::Phase;
 use super::run::{Solver, by_sign};
 use super::shoot::{Beam, Shooter, evaluate, receiver_at, shoot_at};
 use super::tiling::Tiling;
-use crate::form_factor::{Gather, Sampler};
+use crate::form_factor::Gather;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
@@ -35,9 +35,6 @@ const STILL_TO_GROW: f32 = 1.5;
 /// Light in a group may differ by this many times ε_d. In an element as small it may by more (see `size_exponent`), but that is flat.
 /// With 1 a draft of `staircase2` takes a seventh longer for the same error, with 25 its error grows by a third.
 const UNEVEN: f64 = 5.0;
-
-/// How much coarser the thresholds ε_fe and ε_fd of waves are than those of the gathering at the end.
-const COARSER: f64 = 2.0;
 
 /// A wave that has arrived at the first vertices.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -180,11 +177,7 @@ impl<'a> Solver<'a> {
             Some(all) => all,
             None => self.radiating(&wave.cells, settled),
         };
-        let sampler = if settled {
-            self.sampler()
-        } else {
-            self.coarse_sampler()
-        };
+        let sampler = self.sampler();
         let beam = Beam {
             sampler: &sampler,
             shooter: &all,
@@ -241,13 +234,6 @@ impl<'a> Solver<'a> {
             arrived[vertex as usize] = gather;
         }
         rays
-    }
-
-    /// For light that the gathering at the end will ask for once more.
-    pub(super) fn coarse_sampler(&self) -> Sampler<'a> {
-        let mut sampler = self.sampler();
-        sampler.thresholds = sampler.thresholds.scaled(COARSER);
-        sampler
     }
 
     /// A wave has arrived everywhere.

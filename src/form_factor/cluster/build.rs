@@ -4,6 +4,8 @@ use super::{Clusters, Node, Sends, Tile, on_both};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
+use rayon::iter::repeat_n;
+use rayon::prelude::*;
 
 /// Nodes deeper than this are split into equal numbers, so that no arrangement of tiles makes a deep tree.
 const DEEPEST_IN_SPACE: u32 = 40;
@@ -16,35 +18,41 @@ impl Clusters {
             let of = &tiles[*tile as usize];
             (facing(of.normal.as_dvec3()), of.back)
         };
-        order.sort_by_key(side);
+        order.par_sort_by_key(side);
         let builder = Builder {
             tiles: &tiles,
-            centres: tiles.iter().map(Tile::centre).collect(),
+            centres: tiles.par_iter().map(Tile::centre).collect(),
         };
-        let (mut roots, mut nodes) = (Vec::new(), Vec::with_capacity(2 * tiles.len()));
-        let mut first = 0;
-        for group in order.chunk_by_mut(|a, b| side(a) == side(b)) {
-            let root = nodes.len();
-            roots.push(root as u32);
-            nodes.resize(root + count(group.len()), Node::default());
+        let groups: Vec<&mut [u32]> = order.chunk_by_mut(|a, b| side(a) == side(b)).collect();
+        let all = groups.iter().map(|group| count(group.len())).sum();
+        let mut nodes: Vec<Node> = repeat_n(Node::default(), all).collect();
+        let (mut roots, mut trees) = (Vec::new(), Vec::new());
+        let (mut number, mut first, mut rest) = (0, 0, nodes.as_mut_slice());
+        for group in groups {
+            let (tree, others) = rest.split_at_mut(count(group.len()));
+            roots.push(number);
             let place = Place {
-                number: root as u32,
+                number,
                 first,
                 depth: 0,
             };
-            builder.build(group, &mut nodes[root..], place);
+            number += tree.len() as u32;
             first += group.len() as u32;
+            rest = others;
+            trees.push((group, tree, place));
         }
+        let build = |(group, tree, place)| builder.build(group, tree, place);
+        trees.into_par_iter().with_max_len(1).for_each(build);
         let mut places = vec![0; tiles.len()];
         for (place, tile) in (0..).zip(&order) {
             places[*tile as usize] = place;
         }
         Self {
             radiosity: vec![Spectrum::ZERO; tiles.len()],
-            sends: vec![Sends::default(); nodes.len()],
+            sends: repeat_n(Sends::default(), nodes.len()).collect(),
             sums: vec![0.0; tiles.len() + 1],
             steps: Vec::new(),
-            tiles: order.iter().map(|tile| tiles[*tile as usize]).collect(),
+            tiles: order.par_iter().map(|tile| tiles[*tile as usize]).collect(),
             places,
             nodes,
             roots,
