@@ -1,8 +1,12 @@
-//! Whole solves: seconds, rays and rays per second on both engines, and their ratio.
+//! Whole solves: seconds, rays and rays per second on both engines, and their ratio; then what a second thread saves.
 //!
-//! `cargo bench --bench solve` runs each scene three times on each engine, interleaved, and prints medians.
+//! `cargo bench --bench solve` runs each scene three times on each engine and five times on one and on two threads, interleaved, and
+//! prints medians.
+
+mod hall;
 
 use radiosity::scene::Scene;
+use radiosity::solution::Solution;
 use radiosity::solver::{Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
@@ -10,6 +14,12 @@ use std::path::Path;
 use std::time::Instant;
 
 const ROUNDS: usize = 3;
+
+/// Of one and two threads.
+const TURNS: usize = 5;
+
+/// Triangles of the hall.
+const HALL: usize = 8_000;
 
 fn main() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -20,6 +30,61 @@ fn main() {
             compare(name, &scene, preset);
         }
     }
+    println!("\nscene          preset     vertices  one thread s  two threads s  ratio");
+    for name in ["cornell-box", "shadow", "geometry"] {
+        let scene = Scene::load(&scenes.join(name)).expect("the scenes of this repository load");
+        scale(name, &scene, Preset::Standard);
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("hall.obj");
+    hall::write(&file, HALL);
+    scale(
+        "hall",
+        &Scene::load(&file).expect("halls load"),
+        Preset::Draft,
+    );
+}
+
+/// The same solve on one and on two threads.
+fn scale(name: &str, scene: &Scene, preset: Preset) {
+    let mut times = [const { Vec::new() }; 2];
+    let mut vertices = 0;
+    for _ in 0..TURNS {
+        for (threads, times) in (1..).zip(&mut times) {
+            let (seconds, solution) = timed(scene, preset, EngineChoice::Auto, threads)
+                .expect("one engine is always there");
+            times.push(seconds);
+            vertices = solution.report.vertices;
+        }
+    }
+    let [one, two] = times.map(|times| median(times).expect("there were turns"));
+    println!(
+        "{name:14} {preset:<10?} {vertices:8}  {one:12.2}  {two:13.2}  {:5.2}",
+        one / two
+    );
+}
+
+/// Seconds of one solve, if the engine was built in.
+fn timed(
+    scene: &Scene,
+    preset: Preset,
+    engine: EngineChoice,
+    threads: usize,
+) -> Option<(f64, Solution)> {
+    let settings = Settings {
+        options: preset.options(),
+        engine,
+        threads,
+        ..Settings::default()
+    };
+    let started = Instant::now();
+    let solution = solve(scene, &settings, &mut Silent).ok()?;
+    Some((started.elapsed().as_secs_f64(), solution))
+}
+
+fn median(mut times: Vec<f64>) -> Option<f64> {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied()
 }
 
 fn compare(name: &str, scene: &Scene, preset: Preset) {
@@ -28,23 +93,13 @@ fn compare(name: &str, scene: &Scene, preset: Preset) {
     let mut rays = [0; 2];
     for _ in 0..ROUNDS {
         for (i, engine) in engines.into_iter().enumerate() {
-            let settings = Settings {
-                options: preset.options(),
-                engine,
-                threads: 0,
-                ..Settings::default()
-            };
-            let started = Instant::now();
-            if let Ok(solution) = solve(scene, &settings, &mut Silent) {
-                times[i].push(started.elapsed().as_secs_f64());
+            if let Some((seconds, solution)) = timed(scene, preset, engine, 0) {
+                times[i].push(seconds);
                 rays[i] = solution.report.rays;
             }
         }
     }
-    let medians = times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).copied()
-    });
+    let medians = times.map(median);
     for (i, engine) in engines.iter().enumerate() {
         let Some(seconds) = medians[i] else {
             println!("{name:14} {preset:<10?} {engine:8} not built in");
