@@ -133,24 +133,25 @@ impl Mesh {
         })
     }
 
+    /// The vertex in the middle of each side of a leaf, if there is one.
+    fn hanging(&self, of: &Element) -> [u32; 4] {
+        let mut hanging = [NONE; 4];
+        for (side, a, b) in of.sides().filter(|_| of.is_leaf()) {
+            let [a, b] = [a, b].map(|v| self.vertices[v as usize].lattice);
+            hanging[side] = self.vertex_at(of.patch, a.midpoint(b)).unwrap_or(NONE);
+        }
+        hanging
+    }
+
     /// Finds hanging vertices, and takes in which of the vertices from `first` on are buried (those not spoken of are open);
     /// to be called after splits, before light is interpolated.
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
-        let (vertices, at) = (&self.vertices, &self.at);
-        let middle = |patch: u32, a: u32, b: u32| {
-            let [a, b] = [a, b].map(|v| vertices[v as usize].lattice);
-            at.get(&(patch, a.midpoint(b))).copied().unwrap_or(NONE)
-        };
-        let touched = self.elements.par_iter_mut().with_min_len(1024);
+        let mut elements = std::mem::take(&mut self.elements);
+        let touched = elements.par_iter_mut().with_min_len(1024);
         touched
             .filter(|of| self.touched[of.patch as usize])
-            .for_each(|of| {
-                let mut hanging = [NONE; 4];
-                for (side, a, b) in of.sides().filter(|_| of.is_leaf()) {
-                    hanging[side] = middle(of.patch, a, b);
-                }
-                of.hanging = hanging;
-            });
+            .for_each(|of| of.hanging = self.hanging(of));
+        self.elements = elements;
         self.touched.fill(false);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);

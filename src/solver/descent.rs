@@ -190,30 +190,16 @@ impl<'a> Descent<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
     use crate::solver::light::Sign;
     use crate::solver::options::Preset;
-    use crate::solver::{Course, Silent, Solver, occluders};
-    use crate::visibility::{EngineChoice, build};
-    use std::path::Path;
-    use std::time::Duration;
+    use crate::solver::trial::Trial;
 
     /// What all patches reflect in the box, gathered down the quadtree and at every vertex of a mesh that its emitter has refined.
     #[test]
     fn what_follows_is_what_is_there_to_half_of_the_threshold() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box");
-        let scene = Scene::load(&folder).expect("it is there");
         let options = Preset::Standard.options();
-        let coarse = Mesh::new(&scene, options.limits);
-        let engine = build(EngineChoice::Obvhs, &occluders(&scene, &coarse), 0).expect("it can");
-        let once = Options {
-            max_shots: Some(1),
-            audit_points: 0,
-            ..options.clone()
-        };
-        let lit = Solver::new(&scene, coarse, &*engine, once).run(&mut Silent);
-        let state = (lit.mesh, lit.light, Course::default());
-        let solver = Solver::resume(&scene, state, &*engine, options.clone(), Duration::ZERO);
+        let trial = Trial::after(1, options.clone());
+        let solver = trial.solver();
         let (mesh, light) = (&solver.mesh, &solver.light);
         let sampler = solver.sampler();
         let (mut followed, mut known) = (

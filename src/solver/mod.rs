@@ -28,6 +28,8 @@ mod shoot;
 mod shot;
 mod source;
 mod tiling;
+#[cfg(test)]
+mod trial;
 mod volley;
 mod wave;
 

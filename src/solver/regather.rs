@@ -63,7 +63,7 @@ impl Solver<'_> {
             self.course.rays += of.rays;
             so_far.lost += of.lost;
             if giver.power > much {
-                let arrived = (of.received + of.lost.all).element_sum();
+                let arrived = (of.received(&self.mesh) + of.lost.all).element_sum();
                 so_far.sums.push((arrived / giver.power, giver.power));
             }
         }

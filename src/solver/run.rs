@@ -13,6 +13,7 @@ use super::outcome::{Outcome, StopReason};
 use super::parts::{Laps, Parts};
 use super::shoot::Shooter;
 use super::tiling::Tiling;
+use super::volley::{side_by_side, strongest};
 use super::wave::EARLY;
 use crate::geometry::polygon::vector_area;
 use crate::mesh::Mesh;
@@ -215,14 +216,16 @@ impl<'a> Solver<'a> {
             self.begin_wave(&powers, bounce);
             return None;
         }
-        let strongest = select(&powers);
+        let left = self.options.max_shots.map_or(u64::MAX, |most| most - shots);
+        let most = usize::try_from(left).unwrap_or(usize::MAX);
+        let givers = strongest(&powers, most.min(side_by_side(&self.mesh)));
         self.laps.lap(|parts| &mut parts.selecting);
-        let power = powers[strongest].element_sum() / emitted;
+        let strongest = givers[0];
+        let power = strongest.power / emitted;
         if self.meshes(power) {
-            self.shoot_from(strongest / 2, Sign::ALL[strongest % 2], power);
+            self.shoot_from(strongest.patch, strongest.sign, power);
         } else {
-            let most = self.options.max_shots.map_or(u64::MAX, |most| most - shots);
-            self.volley(&powers, usize::try_from(most).unwrap_or(usize::MAX));
+            self.volley(&givers);
         }
         None
     }
@@ -233,7 +236,7 @@ impl<'a> Solver<'a> {
     }
 
     /// By patch, first the positive, then the negative.
-    fn unshot_powers(&self) -> Vec<Power> {
+    pub(super) fn unshot_powers(&self) -> Vec<Power> {
         let power = |of: usize| {
             let (patch, sign) = (of / 2, Sign::ALL[of % 2]);
             self.light.unshot_power(&self.mesh, patch, sign)
@@ -307,15 +310,4 @@ fn part(stage: &Stage) -> fn(&mut Parts) -> &mut f64 {
 /// The positive of all unshot powers together, and the negative.
 pub(super) fn by_sign(powers: &[Power]) -> [Power; 2] {
     [0, 1].map(|sign| powers.iter().skip(sign).step_by(2).sum())
-}
-
-/// The largest power; the first of equals.
-fn select(powers: &[Power]) -> usize {
-    let mut best = 0;
-    for (patch, power) in powers.iter().enumerate() {
-        if power.element_sum() > powers[best].element_sum() {
-            best = patch;
-        }
-    }
-    best
 }

@@ -32,10 +32,16 @@ pub(super) struct Giver {
 pub(super) struct Given {
     /// By vertex.
     pub irradiance: Vec<Spectrum>,
-    /// The power that arrives.
-    pub received: Power,
     pub lost: Lost,
     pub rays: u64,
+}
+
+impl Given {
+    /// The power that arrives.
+    pub fn received(&self, mesh: &Mesh) -> Power {
+        let received = self.irradiance.iter().zip(&mesh.weights);
+        received.map(|(e, w)| e.as_dvec3() * *w).sum()
+    }
 }
 
 impl Solver<'_> {
@@ -57,22 +63,19 @@ impl Solver<'_> {
         };
         let (arrived, rays) = self.arrivals(beam, patch, &reached);
         let irradiance: Vec<Spectrum> = arrived.into_iter().map(|g| g.irradiance).collect();
-        let received = irradiance.iter().zip(&self.mesh.weights);
         let power = power / self.emitted().element_sum();
         let seed = self.course.shots as u32 + patch as u32;
         Given {
-            received: received.map(|(e, w)| e.as_dvec3() * *w).sum(),
             irradiance,
             lost: self.escape(patch, &shooter, power, seed) * f64::from(sign.factor()),
             rays,
         }
     }
 
-    /// Shots from the strongest of `powers` and from others nearly as strong, `most` at the most; none of them tests the mesh.
-    pub(super) fn volley(&mut self, powers: &[Power], most: usize) {
-        let givers = strongest(powers, most.min(side_by_side(&self.mesh)));
-        let given = self.given(&givers, &self.light);
-        for giver in &givers {
+    /// A shot from each of `givers`; none of them tests the mesh.
+    pub(super) fn volley(&mut self, givers: &[Giver]) {
+        let given = self.given(givers, &self.light);
+        for giver in givers {
             self.light.take(&self.mesh, giver.patch, giver.sign);
         }
         for of in given {
@@ -84,18 +87,18 @@ impl Solver<'_> {
     }
 }
 
-/// The strongest of `powers`, by patch and sign, and those nearly as strong, `most` at the most.
-fn strongest(powers: &[Power], most: usize) -> Vec<Giver> {
+/// The strongest of `powers`, by patch and sign (the first of equals), and then those nearly as strong, `most` at the most.
+pub(super) fn strongest(powers: &[Power], most: usize) -> Vec<Giver> {
     let giver = |(of, power): (usize, &Power)| Giver {
         patch: of / 2,
         sign: Sign::ALL[of % 2],
         power: power.element_sum(),
     };
-    let mut givers: Vec<Giver> = powers.iter().enumerate().map(giver).collect();
+    let givers = powers.iter().enumerate().map(giver);
+    let least = ALONGSIDE * givers.clone().map(|of| of.power).fold(0.0, f64::max);
+    let mut givers: Vec<Giver> = givers.filter(|of| of.power >= least).collect();
     givers.sort_by(|a, b| b.power.total_cmp(&a.power));
     givers.truncate(most);
-    let least = ALONGSIDE * givers.first().map_or(0.0, |giver| giver.power);
-    givers.retain(|giver| giver.power >= least);
     givers
 }
 
@@ -107,35 +110,15 @@ pub(super) fn side_by_side(mesh: &Mesh) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
     use crate::solver::options::Preset;
-    use crate::solver::{Course, Options, Silent, occluders};
-    use crate::visibility::{EngineChoice, build};
-    use std::path::Path;
-    use std::time::Duration;
+    use crate::solver::trial::Trial;
 
     #[test]
     fn what_shots_of_a_volley_give_one_another_stays_unshot() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box");
-        let scene = Scene::load(&folder).expect("it is there");
-        let options = Options {
-            max_shots: Some(20),
-            audit_points: 0,
-            ..Preset::Draft.options()
-        };
-        let mesh = Mesh::new(&scene, options.limits);
-        let engine = build(EngineChoice::Obvhs, &occluders(&scene, &mesh), 0).expect("it can");
-        let lit = Solver::new(&scene, mesh, &*engine, options.clone()).run(&mut Silent);
-        let state = (lit.mesh, lit.light, Course::default());
-        let mut solver = Solver::resume(&scene, state, &*engine, options, Duration::ZERO);
+        let trial = Trial::after(20, Preset::Draft.options());
+        let mut solver = trial.solver();
 
-        let powers: Vec<Power> = (0..2 * solver.mesh.patches.len())
-            .map(|of| {
-                let light = &solver.light;
-                light.unshot_power(&solver.mesh, of / 2, Sign::ALL[of % 2])
-            })
-            .collect();
-        let givers = strongest(&powers, SIDE_BY_SIDE);
+        let givers = strongest(&solver.unshot_powers(), SIDE_BY_SIDE);
         assert!(givers.len() > 1, "{givers:?}");
         let mut expected = solver.light.clone();
         for giver in &givers {
@@ -145,7 +128,7 @@ mod tests {
             let given = solver.given(&[*giver], &solver.light).remove(0);
             expected.receive(given.irradiance.into_par_iter());
         }
-        solver.volley(&powers, SIDE_BY_SIDE);
+        solver.volley(&givers);
         assert_eq!(solver.light, expected);
         assert_eq!(solver.course.shots, givers.len() as u64);
         let left = |of: &Giver| solver.light.unshot_power(&solver.mesh, of.patch, of.sign);

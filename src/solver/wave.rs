@@ -16,6 +16,7 @@ use super::tiling::Tiling;
 use crate::form_factor::Gather;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -135,7 +136,7 @@ impl<'a> Solver<'a> {
 
     /// All light with nothing shot yet, `prospect` times what is unshot as if it had arrived.
     fn foreseen(&self, prospect: Spectrum) -> Light {
-        let light = self.light.irradiance.iter().zip(&self.light.unshot);
+        let light = self.light.irradiance.par_iter().zip(&self.light.unshot);
         let foreseen = |(arrived, unshot): (&Spectrum, &Spectrum)| {
             (*arrived + *unshot * prospect).max(Spectrum::ZERO)
         };
@@ -151,7 +152,7 @@ impl<'a> Solver<'a> {
             cells,
             power,
             next: 0,
-            arrived: vec![Gather::default(); self.mesh.vertices.len()],
+            arrived: repeat_n(Gather::default(), self.mesh.vertices.len()).collect(),
         });
     }
 
