@@ -81,6 +81,20 @@ impl Mesh {
         (0..self.elements.len() as u32).filter(|e| self.elements[*e as usize].is_leaf())
     }
 
+    /// The leaves of a patch.
+    pub fn leaves_of(&self, patch: &Patch) -> Vec<u32> {
+        let mut open: Vec<u32> = patch.roots.clone().rev().collect();
+        let mut leaves = Vec::new();
+        while let Some(element) = open.pop() {
+            let of = &self.elements[element as usize];
+            open.extend(of.parts().rev());
+            if of.is_leaf() {
+                leaves.push(element);
+            }
+        }
+        leaves
+    }
+
     /// How many leaves there are: a split makes four elements of one.
     pub fn leaf_count(&self) -> usize {
         let roots = self.patches.last().map_or(0, |patch| patch.roots.end);

@@ -77,6 +77,15 @@ impl Mesh {
         leader.is_none_or(|leader| *leader == vertex)
     }
 
+    /// The vertex that receives for a vertex: itself, unless it has a site; what follows has none.
+    pub fn receiver_for(&self, vertex: u32) -> u32 {
+        let leader = self.weld.leader.get(vertex as usize);
+        leader
+            .copied()
+            .filter(|leader| *leader != NONE)
+            .unwrap_or(vertex)
+    }
+
     /// Where a vertex receives, and the normal with which it does.
     pub fn receiver(&self, vertex: u32) -> (DVec3, DVec3) {
         let of = &self.vertices[vertex as usize];

@@ -4,7 +4,7 @@
 //! a small cube of space whose patches face the same way, and make one sheet or see one another, receive as one: what one of them does,
 //! another in each wave. (With two, `staircase2` took longer and came no nearer to its reference.)
 
-use super::course::{Bounce, Stage};
+use super::course::{Bounce, Direct, Stage};
 use super::light::Sign;
 use super::run::Solver;
 use super::sheets::{see_one_another, sheets};
@@ -13,7 +13,7 @@ use super::tiling::SIZE;
 use crate::form_factor::Gather;
 use crate::geometry::{facing, jitter};
 use crate::mesh::{Mesh, NONE};
-use crate::radiometry::Spectrum;
+use crate::radiometry::{Power, Spectrum};
 use crate::visibility::Visibility;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -27,6 +27,9 @@ const LARGE: f64 = 1.0 / 16.0;
 /// Pools that a small part of a cube is tried with.
 const MOST_POOLS: usize = 4;
 
+/// A bounce is taken to be no stronger than this part of the one before it.
+pub(super) const MOST_RATIO: f64 = 0.95;
+
 /// The vertices that light falls on, by neighbourhood.
 #[derive(Debug, Clone)]
 pub(super) struct Neighbourhoods {
@@ -35,6 +38,15 @@ pub(super) struct Neighbourhoods {
     ends: Vec<u32>,
     /// In which each vertex is; none that is buried is in any.
     of: Vec<u32>,
+}
+
+impl Bounce {
+    /// What is `unshot` after it over what was before it.
+    pub fn ratio_to(&self, unshot: Power) -> Spectrum {
+        let before = self.unshot.abs().max(Power::splat(f64::MIN_POSITIVE));
+        let ratio = (unshot.abs() / before).min(Power::splat(MOST_RATIO));
+        ratio.as_vec3()
+    }
 }
 
 impl Neighbourhoods {
@@ -164,6 +176,12 @@ impl Solver<'_> {
         let neighbourhoods = self.neighbourhoods.take();
         let neighbourhoods =
             neighbourhoods.unwrap_or_else(|| Neighbourhoods::new(&self.mesh, self.visibility));
+        if self.light.is_unreflected() {
+            self.course.direct = Some(Direct {
+                irradiance: self.light.irradiance.clone(),
+                lost: self.course.lost,
+            });
+        }
         let arrived = self.arrivals_near(beam, &neighbourhoods);
         self.light.take_all(sign);
         let at = neighbourhoods.of.par_iter().map(|near| match *near {

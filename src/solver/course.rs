@@ -26,6 +26,8 @@ pub struct Course {
     /// Why the mesh is not refined any further, if a limit ended it.
     pub meshing_ended: Option<MeshingEnd>,
     pub(super) lost: Lost,
+    /// From the first bounce to the gathering, unless there was other light before.
+    pub(super) direct: Option<Direct>,
     /// See [`Audit::sent_sum`](super::Audit::sent_sum).
     pub(super) sent_sum: Option<Span>,
     pub(super) stage: Stage,
@@ -59,6 +61,15 @@ pub(super) enum Stage {
     Settling(Shot),
     /// A shot, after a wave that arrived at neighbourhoods.
     Bounced(Bounce),
+}
+
+/// The light of the emitters alone, kept while what is reflected goes from wave to wave: it need not be gathered once more.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Direct {
+    /// By vertex.
+    pub irradiance: Vec<Spectrum>,
+    /// What of it left the scene.
+    pub lost: Lost,
 }
 
 /// A wave that has arrived at neighbourhoods.
@@ -144,28 +155,35 @@ impl Course {
             self.stage = Stage::Shooting;
         }
         self.meshing_ended = None;
+        self.direct = None;
     }
 
     /// Checks a course that was read against the mesh that it belongs to. The error says what does not fit.
     pub fn check(&self, mesh: &Mesh) -> Result<(), String> {
         let (patches, elements) = (mesh.patches.len() as u32, mesh.elements.len() as u32);
-        let fits = match &self.stage {
-            Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
-            Stage::Refining(shot) | Stage::Settling(shot) => {
-                let mut levels = 1..=DEEPEST;
-                let fits = match shot.shooter {
-                    ALL => shot.cells.len() == tile_count(mesh),
-                    patch => patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l)),
-                };
-                fits && shot.candidates.iter().all(|e| *e < elements)
-                    && shot.feelers.iter().all(|f| f.patch < patches)
-                    && shot.arrived.len() == mesh.vertices.len()
-            }
-            Stage::Waving(wave) => {
-                wave.cells.len() == tile_count(mesh) && wave.arrived.len() == mesh.vertices.len()
-            }
-            Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
-        };
+        let is_known = |direct: &Direct| direct.irradiance.len() == mesh.vertices.len();
+        let fits = self.direct.as_ref().is_none_or(is_known);
+        let fits = fits
+            && match &self.stage {
+                Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
+                Stage::Refining(shot) | Stage::Settling(shot) => {
+                    let mut levels = 1..=DEEPEST;
+                    let fits = match shot.shooter {
+                        ALL => shot.cells.len() == tile_count(mesh),
+                        patch => {
+                            patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l))
+                        }
+                    };
+                    fits && shot.candidates.iter().all(|e| *e < elements)
+                        && shot.feelers.iter().all(|f| f.patch < patches)
+                        && shot.arrived.len() == mesh.vertices.len()
+                }
+                Stage::Waving(wave) => {
+                    wave.cells.len() == tile_count(mesh)
+                        && wave.arrived.len() == mesh.vertices.len()
+                }
+                Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
+            };
         if fits {
             Ok(())
         } else {

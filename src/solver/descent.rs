@@ -5,7 +5,7 @@
 
 use super::light::Light;
 use super::options::Options;
-use super::refine::{Range, scale};
+use super::refine::{Range, scale, unit};
 use super::shoot::{Beam, Shooter, shoot_at};
 use crate::form_factor::Gather;
 use crate::geometry::polygon;
@@ -25,6 +25,10 @@ const FLOOR: f64 = 0.1;
 /// It is taken for rough if the source is not this many times its longest side away.
 const NEAR: f64 = 1.0;
 
+/// What all patches reflect together is asked for at all vertices of elements longer than this many of the smallest: it comes from
+/// everywhere, also from what is near.
+const WIDEST: f64 = 4.0;
+
 /// One shot on its way down.
 pub(super) struct Descent<'a> {
     mesh: &'a Mesh,
@@ -32,7 +36,7 @@ pub(super) struct Descent<'a> {
     beam: Beam<'a>,
     options: &'a Options,
     /// What the shot gives to each vertex.
-    pub arrived: Vec<Gather>,
+    arrived: &'a mut [Gather],
     is_known: Vec<bool>,
     pub rays: u64,
 }
@@ -46,13 +50,19 @@ struct Fan {
 
 impl<'a> Descent<'a> {
     /// Nothing has arrived yet; nothing will at buried vertices.
-    pub fn new(mesh: &'a Mesh, light: &'a Light, beam: Beam<'a>, options: &'a Options) -> Self {
+    pub fn new(
+        mesh: &'a Mesh,
+        light: &'a Light,
+        beam: Beam<'a>,
+        options: &'a Options,
+        arrived: &'a mut [Gather],
+    ) -> Self {
         Self {
             mesh,
             light,
             beam,
             options,
-            arrived: vec![Gather::default(); mesh.vertices.len()],
+            arrived,
             is_known: mesh.buried.clone(),
             rays: 0,
         }
@@ -94,10 +104,14 @@ impl<'a> Descent<'a> {
         let of = &self.mesh.elements[element as usize];
         let mut corners = [Gather::default(); 4];
         for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
-            *corner = self.arrived[*vertex as usize];
+            *corner = self.at(*vertex);
         }
-        let centre = self.arrived[of.centre as usize];
+        let centre = self.at(of.centre);
         Fan { corners, centre }
+    }
+
+    fn at(&self, vertex: u32) -> Gather {
+        self.arrived[self.mesh.receiver_for(vertex) as usize]
     }
 
     /// Evaluates the shot at those vertices of elements that it has not arrived at.
@@ -110,7 +124,7 @@ impl<'a> Descent<'a> {
                 }
             }
         }
-        self.rays += shoot_at(self.mesh, self.light, self.beam, &fresh, &mut self.arrived);
+        self.rays += shoot_at(self.mesh, self.light, self.beam, &fresh, self.arrived);
     }
 
     fn is_rough(&self, element: u32) -> bool {
@@ -118,13 +132,19 @@ impl<'a> Descent<'a> {
         if self.is_near(element) || of.vertices().any(|v| self.mesh.buried[v as usize]) {
             return true;
         }
+        let residual = of.residual(|v| self.at(v).irradiance);
+        let residual = f64::from(residual.max_element());
+        if let Shooter::All { .. } = self.beam.shooter {
+            // No other shot adds its part to the error of this one.
+            let unit = unit(self.mesh, self.light, &self.beam, self.options, element);
+            return residual > RESIDUAL * self.options.epsilon_r * unit;
+        }
         let arrived = || of.vertices().map(|v| &self.arrived[v as usize]);
         let given = arrived().map(|g| g.irradiance.abs().max_element());
         let given = f64::from(given.fold(0.0, f32::max));
         let tolerance = given + FLOOR * scale(self.mesh, self.light, &self.beam, element);
 
-        let residual = of.residual(|v| self.arrived[v as usize].irradiance);
-        if f64::from(residual.max_element()) > RESIDUAL * self.options.epsilon_r * tolerance {
+        if residual > RESIDUAL * self.options.epsilon_r * tolerance {
             return true;
         }
         let unoccluded = arrived().map(|g| g.unoccluded.max_element());
@@ -136,7 +156,8 @@ impl<'a> Descent<'a> {
     /// Whether the source is so near that five points may miss where most of its light falls.
     fn is_near(&self, element: u32) -> bool {
         let Shooter::Patch(source) = self.beam.shooter else {
-            return false;
+            let smallest = self.options.limits.min_size * self.mesh.frame.extent();
+            return self.mesh.longest_side(element) > WIDEST * smallest;
         };
         let centre = self.mesh.elements[element as usize].centre;
         let centre = self.mesh.position(centre);
@@ -218,16 +239,18 @@ mod tests {
                 shooter: &shooter,
                 sign: Sign::Positive,
             };
-            let mut down = Descent::new(mesh, light, beam, &options);
+            let mut arrived = [0, 1].map(|_| vec![Gather::default(); mesh.vertices.len()]);
+            let [below, at] = &mut arrived;
+            let mut down = Descent::new(mesh, light, beam, &options, below);
             down.descend(mesh.patches.iter().flat_map(|p| p.roots.clone()).collect());
-            let mut everywhere = Descent::new(mesh, light, beam, &options);
+            let mut everywhere = Descent::new(mesh, light, beam, &options, at);
             everywhere.descend(mesh.leaves().collect());
-            for vertex in 0..mesh.vertices.len() {
-                followed[vertex] += f64::from(down.arrived[vertex].irradiance.max_element());
-                known[vertex] += f64::from(everywhere.arrived[vertex].irradiance.max_element());
-            }
             rays_down += down.rays;
             rays_everywhere += everywhere.rays;
+            for vertex in 0..mesh.vertices.len() {
+                followed[vertex] += f64::from(below[vertex].irradiance.max_element());
+                known[vertex] += f64::from(at[vertex].irradiance.max_element());
+            }
         }
         let squares = |of: &dyn Fn(usize) -> f64| {
             (0..mesh.vertices.len())

@@ -91,6 +91,11 @@ impl Light {
         self.exitance_unshot.iter().any(unshot)
     }
 
+    /// Whether nothing that has arrived was shot on.
+    pub(super) fn is_unreflected(&self) -> bool {
+        self.irradiance == self.unshot
+    }
+
     /// Adds what arrives at each vertex, all of it unshot.
     pub(super) fn receive(&mut self, arrived: impl IndexedParallelIterator<Item = Spectrum>) {
         let light = self.irradiance.par_iter_mut().zip(&mut self.unshot);

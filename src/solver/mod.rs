@@ -23,6 +23,7 @@ mod refine;
 mod regather;
 mod room;
 mod run;
+mod settle;
 mod sheets;
 mod shoot;
 mod shot;

@@ -73,7 +73,7 @@ impl Refinement<'_> {
     /// Test 1: corners differ by more than ε_d.
     fn nodal_difference(&self, element: u32, unit: f64) -> bool {
         let corners = self.mesh.elements[element as usize].corners();
-        let values = corners.iter().map(|v| self.light.irradiance[*v as usize]);
+        let values = corners.iter().map(|v| self.tested(*v));
         let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
         let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
         self.size(element, high - low) > self.options.epsilon_d * unit
@@ -83,8 +83,16 @@ impl Refinement<'_> {
     /// the element was made (before that the centre was interpolated), so small lights add up.
     fn residual(&self, element: u32, unit: f64) -> bool {
         let of = &self.mesh.elements[element as usize];
-        let residual = of.residual(|v| self.light.irradiance[v as usize]);
+        let residual = of.residual(|v| self.tested(v));
         self.size(element, residual) > self.options.epsilon_r * unit
+    }
+
+    /// What tests 1 and 2 compare at a vertex: all light, but of a last gathering what that has brought.
+    fn tested(&self, vertex: u32) -> Spectrum {
+        match self.beam.shooter {
+            Shooter::All { settled: true, .. } => self.arrived[vertex as usize].irradiance,
+            _ => self.light.irradiance[vertex as usize],
+        }
     }
 
     /// A difference of irradiances on an element in the quantity that is tested, largest channel.
@@ -97,13 +105,8 @@ impl Refinement<'_> {
         f64::from((difference * weight).max_element())
     }
 
-    /// What ε_d and ε_r are multiples of on an element.
     fn unit(&self, element: u32) -> f64 {
-        let h0 = self.options.limits.initial_size * self.mesh.frame.extent();
-        let growth = (h0 / self.mesh.longest_side(element))
-            .max(1.0)
-            .powf(self.options.size_exponent);
-        self.scale(element) * growth
+        unit(self.mesh, self.light, &self.beam, self.options, element)
     }
 
     fn scale(&self, element: u32) -> f64 {
@@ -275,6 +278,21 @@ impl Refinement<'_> {
         }
         debug_assert!(self.mesh.elements[parent as usize].children == first_child);
     }
+}
+
+/// What ε_d and ε_r are multiples of on an element.
+pub(super) fn unit(
+    mesh: &Mesh,
+    light: &Light,
+    beam: &Beam,
+    options: &Options,
+    element: u32,
+) -> f64 {
+    let h0 = options.limits.initial_size * mesh.frame.extent();
+    let growth = (h0 / mesh.longest_side(element))
+        .max(1.0)
+        .powf(options.size_exponent);
+    scale(mesh, light, beam, element) * growth
 }
 
 /// The irradiance that relative thresholds are multiples of on an element.

@@ -171,12 +171,13 @@ impl<'a> Solver<'a> {
             let roots = mesh.patches.iter().flat_map(|p| p.roots.clone());
             roots.filter(is_reached).collect()
         };
-        let mut descent = Descent::new(mesh, &self.light, beam, &self.options);
+        let mut arrived = vec![Gather::default(); mesh.vertices.len()];
+        let mut descent = Descent::new(mesh, &self.light, beam, &self.options, &mut arrived);
         descent.descend(elements);
-        let mut arrived = descent.arrived;
+        let rays = descent.rays;
         self.mesh
             .continue_to_buried(&mut arrived, |g| &mut g.irradiance, 0);
-        (arrived, descent.rays)
+        (arrived, rays)
     }
 
     /// What of a source's power, a fraction `power` of the emitted, leaves the scene.

@@ -7,7 +7,7 @@ use super::shoot::Shooter;
 use super::source::{Quad, cells_at, cells_on};
 use crate::form_factor::{Clusters, DEEPEST, Tile};
 use crate::mesh::{Mesh, Patch};
-use crate::radiometry::{Power, Spectrum};
+use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -46,12 +46,6 @@ impl Tiling {
             tiling: self,
             settled: true,
         }
-    }
-
-    /// What they send together, W times the square of the frame's scale.
-    pub fn power(&self) -> Power {
-        let power = |(tile, radiosity): (&Tile, Spectrum)| (radiosity * tile.area()).as_dvec3();
-        self.clusters.tiles().map(power).sum()
     }
 
     /// The tiles with what they send, to draw points from.

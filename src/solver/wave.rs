@@ -1,24 +1,25 @@
 //! A scene of many patches: all that is unshot is shot at once, as clusters; a wave of light after the other.
 //!
 //! Direct light arrives at the vertices as a shot does, slice by slice, and refines the mesh as a shot does; so does the gathering at the
-//! end. What either takes is a cut through the tree of clusters for each vertex, not a visit to each vertex for each
-//! patch. The waves in between arrive at neighbourhoods (`bounce.rs`).
+//! end, of what is reflected: the direct light stays as it is. What either takes is a cut through the tree of clusters for each
+//! vertex, not a visit to each vertex for each patch. The waves in between arrive at neighbourhoods (`bounce.rs`).
 
-use super::audit::Span;
 use super::course::{ALL, Bounce, Shot, Stage};
+use super::descent::Descent;
 use super::escape::Lost;
 use super::groups::Groups;
-use super::light::{Light, Sign};
+use super::light::Sign;
 use super::observer::Phase;
 use super::run::{Solver, by_sign};
-use super::shoot::{Beam, Shooter, evaluate, receiver_at, shoot_at};
+use super::shoot::{Beam, Shooter, evaluate, receiver_at};
 use super::tiling::Tiling;
 use crate::form_factor::Gather;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
 use rayon::iter::repeat_n;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Vertices that a wave arrives at between two looks at the observer.
 const SLICE: usize = 1 << 16;
@@ -27,17 +28,11 @@ const SLICE: usize = 1 << 16;
 /// With ten times, `staircase2` came a fifth less near to its reference and saved a twentieth of its time.
 pub(super) const EARLY: f64 = 4.0;
 
-/// A bounce is taken to be no stronger than this part of the one before it.
-const MOST_RATIO: f64 = 0.95;
-
-/// How much the ratio of a bounce to the one before it still grows, in units of how much it has grown last.
-const STILL_TO_GROW: f32 = 1.5;
-
 /// Light in a group may differ by this many times ε_d. In an element as small it may by more (see `size_exponent`), but that is flat.
 /// With 1 a draft of `staircase2` takes a seventh longer for the same error, with 25 its error grows by a third.
 const UNEVEN: f64 = 5.0;
 
-/// A wave that has arrived at the first vertices.
+/// A wave that has arrived at the first patches.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Wave {
     pub kind: Kind,
@@ -45,18 +40,9 @@ pub(super) struct Wave {
     pub cells: Vec<Spectrum>,
     /// As a fraction of the emitted power.
     pub power: f64,
-    /// The first vertex that it has not arrived at.
+    /// The first patch that it has not arrived at.
     pub next: u32,
     pub arrived: Vec<Gather>,
-}
-
-impl Bounce {
-    /// What is `unshot` after it over what was before it.
-    fn ratio_to(&self, unshot: Power) -> Spectrum {
-        let before = self.unshot.abs().max(Power::splat(f64::MIN_POSITIVE));
-        let ratio = (unshot.abs() / before).min(Power::splat(MOST_RATIO));
-        ratio.as_vec3()
-    }
 }
 
 impl Wave {
@@ -66,7 +52,7 @@ impl Wave {
 
     /// What is done, for who watches.
     pub fn phase(&self, mesh: &Mesh) -> Phase {
-        let (done, of) = (self.next, mesh.vertices.len() as u32);
+        let (done, of) = (self.next, mesh.patches.len() as u32);
         match self.kind {
             Kind::Unshot(_) => Phase::Shooting,
             Kind::Whole(_) => Phase::Gathering { done, of },
@@ -79,7 +65,8 @@ impl Wave {
 pub(super) enum Kind {
     /// What is unshot, of one sign.
     Unshot(Sign),
-    /// All light once more, and so many times what is unshot for what is still to come of it.
+    /// What is reflected once more, and so many times what is unshot for what is still to come of it; what is emitted too, unless
+    /// the direct light is known.
     Whole(Spectrum),
 }
 
@@ -102,6 +89,7 @@ impl<'a> Solver<'a> {
         if self.light.is_direct(sign) {
             // The mesh is refined: its neighbourhoods will be others.
             self.neighbourhoods = None;
+            self.course.direct = None;
             self.set_out(Kind::Unshot(sign), cells, power);
         } else {
             let unshot = unshot[0] - unshot[1];
@@ -110,43 +98,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// All light sets out once more.
-    pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
-        let prospect = self.prospect(bounce);
-        let whole = self.foreseen(prospect);
-        let tiling = self.tiling();
-        let cells = tiling.unshot(&self.mesh, &whole, Sign::Positive);
-        self.tiling = Some(tiling);
-        self.set_out(Kind::Whole(prospect), cells, 1.0);
-    }
-
-    /// How many times what is unshot is still to come: λ + λ² + … = λ / (1 - λ), were all that follow like a bounce that leaves λ times
-    /// what it shot. The first ones leave less than those after them, as what is bright for its neighbourhood goes first; the
-    /// ratios approach that of what lasts longest like a geometric series.
-    fn prospect(&self, bounce: Option<Bounce>) -> Spectrum {
-        let Some(bounce) = bounce else {
-            return Spectrum::ZERO;
-        };
-        let ratio = bounce.ratio_to(self.unshot());
-        let growth = bounce.ratio.map_or(Spectrum::ZERO, |before| ratio - before);
-        let ratio = (ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO))
-            .min(Spectrum::splat(MOST_RATIO as f32));
-        ratio / (Spectrum::ONE - ratio)
-    }
-
-    /// All light with nothing shot yet, `prospect` times what is unshot as if it had arrived.
-    fn foreseen(&self, prospect: Spectrum) -> Light {
-        let light = self.light.irradiance.par_iter().zip(&self.light.unshot);
-        let foreseen = |(arrived, unshot): (&Spectrum, &Spectrum)| {
-            (*arrived + *unshot * prospect).max(Spectrum::ZERO)
-        };
-        Light {
-            unshot: light.map(foreseen).collect(),
-            ..Light::new(&self.mesh)
-        }
-    }
-
-    fn set_out(&mut self, kind: Kind, cells: Vec<Spectrum>, power: f64) {
+    pub(super) fn set_out(&mut self, kind: Kind, cells: Vec<Spectrum>, power: f64) {
         self.course.stage = Stage::Waving(Wave {
             kind,
             cells,
@@ -187,32 +139,57 @@ impl<'a> Solver<'a> {
                 Kind::Whole(_) => Sign::Positive,
             },
         };
-        let end = (wave.next as usize + SLICE).min(self.mesh.vertices.len());
-        let open = |v: &u32| !self.mesh.buried[*v as usize];
-        let slice = (wave.next..end as u32).filter(open);
-        let (small, others): (Vec<u32>, Vec<u32>) = slice.partition(|v| self.is_of_small(*v));
-        self.course.rays += shoot_at(&self.mesh, &self.light, beam, &others, &mut wave.arrived);
-        self.course.rays += self.shoot_at_groups(beam, &small, &mut wave.arrived);
-        wave.next = end as u32;
+        let slice = self.slice_from(wave.next as usize);
+        let patches = self.mesh.patches[slice.clone()].iter();
+        let (small, large): (Vec<&Patch>, Vec<&Patch>) =
+            patches.partition(|patch| self.mesh.is_small(patch));
+        let elements = self.elements_for(&wave, &large);
+        let arrived = &mut wave.arrived;
+        let mut descent = Descent::new(&self.mesh, &self.light, beam, &self.options, arrived);
+        descent.descend(elements);
+        let traced = descent.rays + self.shoot_at_groups(beam, &small, arrived);
+        self.course.rays += traced;
+        wave.next = slice.end as u32;
         self.radiated = Some(all);
-        if end == self.mesh.vertices.len() {
+        if slice.end == self.mesh.patches.len() {
             self.arrive(wave);
         } else {
             self.course.stage = Stage::Waving(wave);
         }
     }
 
-    /// Whether a vertex belongs to a patch that is smaller than elements may be.
-    fn is_of_small(&self, vertex: u32) -> bool {
-        let patch = self.mesh.vertices[vertex as usize].patch;
-        self.mesh.is_small(&self.mesh.patches[patch as usize])
+    /// Where a wave arrives at patches that are not small: what is reflected goes down the quadtree as far as it is rough, shadows of
+    /// emitters are nowhere foreseen.
+    fn elements_for(&self, wave: &Wave, patches: &[&Patch]) -> Vec<u32> {
+        let patches = patches.iter();
+        if wave.is_whole() && self.course.direct.is_some() {
+            return patches.flat_map(|patch| patch.roots.clone()).collect();
+        }
+        patches
+            .flat_map(|patch| self.mesh.leaves_of(patch))
+            .collect()
     }
 
-    /// [`shoot_at`] for vertices of small patches: not all of them receive. Returns the number of rays.
-    fn shoot_at_groups(&self, beam: Beam, vertices: &[u32], arrived: &mut [Gather]) -> u64 {
+    /// Patches that have about [`SLICE`] vertices together.
+    fn slice_from(&self, first: usize) -> Range<usize> {
+        let mut vertices = 0;
+        let left = self.mesh.patches[first..].iter();
+        let count = left
+            .take_while(|patch| {
+                let begins = vertices < SLICE;
+                vertices += patch.vertices.len();
+                begins
+            })
+            .count();
+        first..first + count
+    }
+
+    /// Evaluates `beam` at some of the vertices of small patches, from which the others take it. Returns the number of rays.
+    fn shoot_at_groups(&self, beam: Beam, small: &[&Patch], arrived: &mut [Gather]) -> u64 {
         let mesh = &self.mesh;
-        let receiving = vertices.iter().copied().filter(|v| mesh.receives(*v));
-        let receiving: Vec<u32> = receiving.collect();
+        let receives = |v: &u32| mesh.receives(*v) && !mesh.buried[*v as usize];
+        let vertices = small.iter().flat_map(|patch| patch.vertices.iter());
+        let receiving: Vec<u32> = vertices.copied().filter(receives).collect();
         let mut rays = 0;
         let receive = |nodes: &[u32]| {
             let receivers = nodes.iter().map(|v| receiver_at(mesh, &self.light, *v));
@@ -261,20 +238,8 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn arrive_whole(&mut self, wave: Wave, prospect: Spectrum) {
-        let whole = self.foreseen(prospect);
-        let Some(all) = &self.radiated else {
-            return;
-        };
-        let lost = self.escape_of_all(all, wave.power);
-        let irradiance = wave.arrived.iter().map(|g| g.irradiance).collect();
-        self.take_over(irradiance, &whole, lost, Vec::new());
-        let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
-        self.course.stage = Stage::Settling(shot);
-    }
-
     /// A wave that has arrived at the vertices that there are; if it `meshes`, all elements are to be tested.
-    fn arrived(&mut self, wave: Wave, sign: Sign, meshes: bool) -> Shot {
+    pub(super) fn arrived(&mut self, wave: Wave, sign: Sign, meshes: bool) -> Shot {
         let candidates = self
             .mesh
             .leaves()
@@ -289,33 +254,6 @@ impl<'a> Solver<'a> {
             arrived: wave.arrived,
             made: self.radiated.take(),
         }
-    }
-
-    /// One pass of refinement for what was gathered of all light. The solve ends when there is nothing to split.
-    pub(super) fn settle(&mut self, mut shot: Shot) {
-        let all = self.made(&mut shot, true);
-        let sampler = self.sampler();
-        self.pass(&mut shot, &sampler, &all);
-        if shot.candidates.is_empty() {
-            self.course.sent_sum = self.sent_sum(&shot.arrived, &all);
-            self.keep_tiling(all);
-            self.course.stage = Stage::Finished;
-        } else {
-            shot.made = Some(all);
-            self.course.stage = Stage::Settling(shot);
-        }
-    }
-
-    /// What arrived and what escaped over what was sent.
-    fn sent_sum(&self, arrived: &[Gather], all: &Shooter) -> Option<Span> {
-        let Shooter::All { tiling, .. } = all else {
-            return None;
-        };
-        let weighted = arrived.iter().zip(&self.mesh.weights);
-        let received: Power = weighted.map(|(g, w)| g.irradiance.as_dvec3() * *w).sum();
-        let sent = tiling.power().element_sum();
-        let arrived = (received + self.course.lost.all).element_sum();
-        Span::of(std::iter::once((arrived / sent, sent)))
     }
 
     /// What escapes of a fraction `power` of what is emitted.

@@ -1,0 +1,148 @@
+//! The gathering of a scene of many patches: after the bounces, what is reflected arrives once more, at the vertices themselves, and the
+//! mesh is refined for it.
+//!
+//! The direct light is not gathered again. It has arrived at every vertex by itself already, with thresholds at least as strict, and needs
+//! elements where what is reflected is smooth.
+
+use super::audit::Span;
+use super::bounce::MOST_RATIO;
+use super::course::{Bounce, Shot, Stage};
+use super::light::{Light, Sign};
+use super::run::Solver;
+use super::wave::{Kind, Wave};
+use crate::radiometry::Spectrum;
+use rayon::prelude::*;
+
+/// How much the ratio of a bounce to the one before it still grows, in units of how much it has grown last.
+const STILL_TO_GROW: f32 = 1.5;
+
+impl Solver<'_> {
+    /// What is reflected sets out once more, with what is emitted if the direct light is not known.
+    pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
+        let prospect = self.prospect(bounce);
+        let whole = self.foreseen(prospect);
+        let tiling = self.tiling();
+        let cells = tiling.unshot(&self.mesh, &whole, Sign::Positive);
+        self.tiling = Some(tiling);
+        self.set_out(Kind::Whole(prospect), cells, 1.0);
+    }
+
+    /// How many times what is unshot is still to come: λ + λ² + … = λ / (1 - λ), were all that follow like a bounce that leaves λ times
+    /// what it shot. The first ones leave less than those after them, as what is bright for its neighbourhood goes first; the
+    /// ratios approach that of what lasts longest like a geometric series.
+    fn prospect(&self, bounce: Option<Bounce>) -> Spectrum {
+        let Some(bounce) = bounce else {
+            return Spectrum::ZERO;
+        };
+        let ratio = bounce.ratio_to(self.unshot());
+        let growth = bounce.ratio.map_or(Spectrum::ZERO, |before| ratio - before);
+        let ratio = (ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO))
+            .min(Spectrum::splat(MOST_RATIO as f32));
+        ratio / (Spectrum::ONE - ratio)
+    }
+
+    /// The light of a gathering with nothing shot yet, `prospect` times what is unshot as if it had arrived.
+    fn foreseen(&self, prospect: Spectrum) -> Light {
+        let light = self.light.irradiance.par_iter().zip(&self.light.unshot);
+        let foreseen = |(arrived, unshot): (&Spectrum, &Spectrum)| {
+            (*arrived + *unshot * prospect).max(Spectrum::ZERO)
+        };
+        let mut light = Light {
+            unshot: light.map(foreseen).collect(),
+            ..Light::new(&self.mesh)
+        };
+        if self.course.direct.is_some() {
+            light.exitance_unshot.fill(Spectrum::ZERO);
+        }
+        light
+    }
+
+    /// What is reflected has arrived everywhere: with the direct light it replaces what there was.
+    pub(super) fn arrive_whole(&mut self, wave: Wave, prospect: Spectrum) {
+        let whole = self.foreseen(prospect);
+        let Some(all) = &self.radiated else {
+            return;
+        };
+        let mut lost = self.escape_of_all(all, wave.power);
+        let mut irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
+        if let Some(direct) = self.course.direct.take() {
+            let sums = irradiance.iter_mut().zip(direct.irradiance);
+            sums.for_each(|(sum, direct)| *sum += direct);
+            lost += direct.lost;
+        }
+        self.take_over(irradiance, &whole, lost, Vec::new());
+        let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
+        self.course.stage = Stage::Settling(shot);
+    }
+
+    /// One pass of refinement for what was gathered. The solve ends when there is nothing to split.
+    pub(super) fn settle(&mut self, mut shot: Shot) {
+        let all = self.made(&mut shot, true);
+        let sampler = self.sampler();
+        self.pass(&mut shot, &sampler, &all);
+        if shot.candidates.is_empty() {
+            self.course.sent_sum = self.sent_sum();
+            self.keep_tiling(all);
+            self.course.stage = Stage::Finished;
+        } else {
+            shot.made = Some(all);
+            self.course.stage = Stage::Settling(shot);
+        }
+    }
+
+    /// What arrived and what escaped over what was sent: all that is emitted, and of what is reflected what is not unshot.
+    fn sent_sum(&self) -> Option<Span> {
+        let (mesh, light) = (&self.mesh, &self.light);
+        let (mut arrived, mut sent) = (self.course.lost.all, self.emitted());
+        for (vertex, weight) in mesh.weights.iter().enumerate() {
+            let patch = &mesh.patches[mesh.vertices[vertex].patch as usize];
+            let (irradiance, unshot) = (light.irradiance[vertex], light.unshot[vertex]);
+            arrived += irradiance.as_dvec3() * *weight;
+            sent += (patch.reflectance * (irradiance - unshot)).as_dvec3() * *weight;
+        }
+        let (arrived, sent) = (arrived.element_sum(), sent.element_sum());
+        Span::of(std::iter::once((arrived / sent, sent)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::solver::trial::Trial;
+    use crate::solver::{Options, Outcome, Preset, Silent};
+    use glam::DVec3;
+
+    /// The Cornell box shot as clusters, from where `shots` waves have left it.
+    fn solved(shots: u64) -> (Trial, Outcome) {
+        let options = Options {
+            cluster_from: 1,
+            audit_points: 0,
+            ..Preset::Standard.options()
+        };
+        let trial = Trial::after(shots, options);
+        let outcome = trial.solver().run(&mut Silent);
+        (trial, outcome)
+    }
+
+    #[test]
+    fn direct_light_and_what_is_reflected_are_all_light_gathered_at_once() {
+        // After one wave all light is direct, and kept; after two it is not known which of it is.
+        let (trial, kept) = solved(1);
+        let (_, anew) = solved(2);
+        let solver = trial.solver();
+        let over = |value: &dyn Fn(DVec3, DVec3) -> f64| -> f64 {
+            let weights = solver.mesh.weights.iter().enumerate();
+            let at = |of: &Outcome, v: usize| of.light.irradiance[v].as_dvec3();
+            weights
+                .map(|(v, weight)| weight * value(at(&kept, v), at(&anew, v)))
+                .sum()
+        };
+        let squares = over(&|a, b| a.distance_squared(b)) / over(&|_, b| b.length_squared());
+        let bias = over(&|a, b| (a - b).element_sum()) / over(&|_, b| b.element_sum());
+        let rms = squares.sqrt();
+        assert!(
+            rms > 0.0 && rms < 0.02 && bias.abs() < 0.005,
+            "{rms}, {bias}"
+        );
+        assert!(kept.course.rays < anew.course.rays);
+    }
+}
