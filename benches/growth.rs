@@ -8,7 +8,7 @@ mod hall;
 use radiosity::cli::peak_memory;
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent};
-use radiosity::{Settings, solve};
+use radiosity::{Run, Settings};
 use std::time::Instant;
 
 const SIZES: [usize; 4] = [10_000, 100_000, 1_000_000, 5_000_000];
@@ -34,7 +34,9 @@ fn main() {
             },
             ..Settings::default()
         };
-        let solution = solve(&scene, &settings, &mut Silent).expect("the hall can be solved");
+        let mut run = Run::new(scene, settings).expect("the hall can be solved");
+        run.go(&mut Silent).expect("it can be solved to the end");
+        let solution = run.finish();
         let total = started.elapsed().as_secs_f64();
         let report = &solution.report;
         let parts = &report.seconds.parts;

@@ -29,6 +29,10 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
+/// A patch with no more vertices than one element has is searched through: most patches of a large scene are such, and an index of theirs
+/// would be as large as they are.
+const FEW: usize = 5;
+
 /// A vertex: a corner or the centre of elements of one patch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Vertex {
@@ -67,6 +71,7 @@ pub struct Mesh {
     /// Patches that were split since hanging vertices were last found.
     #[serde(skip)]
     touched: Vec<bool>,
+    /// The vertices of patches that have more than [`FEW`], by place.
     #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
@@ -104,7 +109,24 @@ impl Mesh {
 
     /// The vertex of a patch at a lattice point, if there is one.
     pub fn vertex_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
-        self.at.get(&(patch, lattice)).copied()
+        let vertices = &self.patches[patch as usize].vertices;
+        if vertices.len() > FEW {
+            return self.at.get(&(patch, lattice)).copied();
+        }
+        let is_there = |v: &u32| self.vertices[*v as usize].lattice == lattice;
+        vertices.iter().copied().find(is_there)
+    }
+
+    /// Takes the vertices of a patch into the index from its `number`th on.
+    fn index(&mut self, patch: u32, number: usize) {
+        let vertices = &self.patches[patch as usize].vertices;
+        let from = if vertices.len() > FEW + 1 { number } else { 0 };
+        if vertices.len() > FEW {
+            for vertex in &vertices[from..] {
+                let lattice = self.vertices[*vertex as usize].lattice;
+                self.at.insert((patch, lattice), *vertex);
+            }
+        }
     }
 
     /// Position of a vertex in the frame.

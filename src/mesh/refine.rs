@@ -100,7 +100,8 @@ impl Mesh {
             lattice,
             point,
         });
-        self.at.insert((patch, lattice), vertex);
+        let number = self.patches[patch as usize].vertices.len() - 1;
+        self.index(patch, number);
         vertex
     }
 

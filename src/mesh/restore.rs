@@ -57,12 +57,7 @@ impl Mesh {
             self.buried.len() == vertices,
             "the number of buried vertices",
         )?;
-        self.at = self
-            .vertices
-            .iter()
-            .zip(0..)
-            .map(|(v, number)| ((v.patch, v.lattice), number))
-            .collect();
+        (0..patches as u32).for_each(|patch| self.index(patch, 0));
         let buried = std::mem::take(&mut self.buried);
         self.touched = vec![true; patches];
         self.finish_topology(0, &buried);

@@ -64,7 +64,7 @@ pub(super) enum Stage {
 }
 
 /// The light of the emitters alone, kept while what is reflected goes from wave to wave: it need not be gathered once more.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Direct {
     /// By vertex.
     pub irradiance: Vec<Spectrum>,

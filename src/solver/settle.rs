@@ -19,6 +19,7 @@ const STILL_TO_GROW: f32 = 1.5;
 impl Solver<'_> {
     /// What is reflected sets out once more, with what is emitted if the direct light is not known.
     pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
+        self.neighbourhoods = None;
         let prospect = self.prospect(bounce);
         let whole = self.foreseen(prospect);
         let tiling = self.tiling();
@@ -41,36 +42,34 @@ impl Solver<'_> {
         ratio / (Spectrum::ONE - ratio)
     }
 
-    /// The light of a gathering with nothing shot yet, `prospect` times what is unshot as if it had arrived.
+    /// The light of a gathering with nothing shot yet.
     fn foreseen(&self, prospect: Spectrum) -> Light {
         let light = self.light.irradiance.par_iter().zip(&self.light.unshot);
-        let foreseen = |(arrived, unshot): (&Spectrum, &Spectrum)| {
-            (*arrived + *unshot * prospect).max(Spectrum::ZERO)
-        };
-        let mut light = Light {
-            unshot: light.map(foreseen).collect(),
-            ..Light::new(&self.mesh)
-        };
+        let mut foreseen = Light::new(&self.mesh);
+        let unshot = light.map(|(arrived, unshot)| reflected(*arrived, *unshot, prospect));
+        unshot.collect_into_vec(&mut foreseen.unshot);
         if self.course.direct.is_some() {
-            light.exitance_unshot.fill(Spectrum::ZERO);
+            foreseen.exitance_unshot.fill(Spectrum::ZERO);
         }
-        light
+        foreseen
     }
 
     /// What is reflected has arrived everywhere: with the direct light it replaces what there was.
     pub(super) fn arrive_whole(&mut self, wave: Wave, prospect: Spectrum) {
-        let whole = self.foreseen(prospect);
         let Some(all) = &self.radiated else {
             return;
         };
-        let mut lost = self.escape_of_all(all, wave.power);
-        let mut irradiance: Vec<Spectrum> = wave.arrived.iter().map(|g| g.irradiance).collect();
-        if let Some(direct) = self.course.direct.take() {
-            let sums = irradiance.iter_mut().zip(direct.irradiance);
-            sums.for_each(|(sum, direct)| *sum += direct);
-            lost += direct.lost;
+        self.course.lost = self.escape_of_all(all, wave.power);
+        let direct = self.course.direct.take().unwrap_or_default();
+        self.course.lost += direct.lost;
+        let light = self.light.irradiance.iter_mut().zip(&mut self.light.unshot);
+        for (vertex, (irradiance, unshot)) in light.enumerate() {
+            let sent = reflected(*irradiance, *unshot, prospect);
+            let direct = direct.irradiance.get(vertex).copied().unwrap_or_default();
+            *irradiance = wave.arrived[vertex].irradiance + direct;
+            *unshot = *irradiance - sent;
         }
-        self.take_over(irradiance, &whole, lost, Vec::new());
+        self.light.exitance_unshot.fill(Spectrum::ZERO);
         let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
         self.course.stage = Stage::Settling(shot);
     }
@@ -103,6 +102,11 @@ impl Solver<'_> {
         let (arrived, sent) = (arrived.element_sum(), sent.element_sum());
         Span::of(std::iter::once((arrived / sent, sent)))
     }
+}
+
+/// What a gathering reflects of what has `arrived` at a vertex: `prospect` times what is unshot as if it had arrived too.
+fn reflected(arrived: Spectrum, unshot: Spectrum, prospect: Spectrum) -> Spectrum {
+    (arrived + unshot * prospect).max(Spectrum::ZERO)
 }
 
 #[cfg(test)]
