@@ -37,6 +37,7 @@ impl Mesh {
             weights: Vec::new(),
             full_weights: Vec::new(),
             touched: Vec::new(),
+            stale: Vec::new(),
             continuation: Default::default(),
             weld: Default::default(),
             at: FxHashMap::default(),

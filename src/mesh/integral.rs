@@ -11,9 +11,18 @@ use rayon::prelude::*;
 const SAG: [f64; 2] = [1.0 / 3.0, 5.0 / 12.0];
 
 impl Mesh {
-    /// Computes the weights; to be called after [`Self::finish_topology`].
+    /// Computes the weights of what has changed; to be called after [`Self::finish_topology`].
     pub fn integrate(&mut self) {
-        let mut weights = vec![0.0; self.vertices.len()];
+        let mut patches = std::mem::take(&mut self.stale);
+        patches.sort_unstable();
+        patches.dedup();
+        let leaves = patches.par_iter().with_min_len(64).flat_map_iter(|patch| {
+            let mut leaves = self.leaves_of(&self.patches[*patch as usize]);
+            // Any way to the same mesh adds in the same order.
+            leaves.sort_unstable();
+            leaves
+        });
+        let leaves: Vec<u32> = leaves.collect();
         let triangles = |of: &Element| {
             let centre = self.position(of.centre);
             let arms = of.corners.map(|corner| match corner {
@@ -26,15 +35,20 @@ impl Mesh {
             (0..count).for_each(|i| areas[i] = area(i));
             areas
         };
-        let areas: Vec<[f64; 4]> = self
-            .elements
+        let areas: Vec<[f64; 4]> = leaves
             .par_iter()
             .with_min_len(1024)
-            .filter(|of| of.is_leaf())
-            .map(triangles)
+            .map(|leaf| triangles(&self.elements[*leaf as usize]))
             .collect();
-        let leaves = self.elements.iter().filter(|of| of.is_leaf());
-        for (of, areas) in leaves.zip(areas) {
+        let vertices = patches
+            .iter()
+            .flat_map(|p| &self.patches[*p as usize].vertices);
+        let vertices = vertices.map(|v| *v as usize);
+        let mut weights = std::mem::take(&mut self.full_weights);
+        weights.resize(self.vertices.len(), 0.0);
+        vertices.clone().for_each(|v| weights[v] = 0.0);
+        for (leaf, areas) in leaves.iter().zip(areas) {
+            let of = &self.elements[*leaf as usize];
             let corners = of.corners();
             let mut whole = 0.0;
             for (i, a, b) in of.sides() {
@@ -50,10 +64,12 @@ impl Mesh {
                 weights[*corner as usize] -= sag / corners.len() as f64;
             }
         }
-        // No less than nothing, but for rounding.
-        weights.iter_mut().for_each(|w| *w = w.max(0.0));
-        let open = |(w, buried): (&f64, &bool)| if *buried { 0.0 } else { *w };
-        self.weights = weights.iter().zip(&self.buried).map(open).collect();
+        self.weights.resize(self.vertices.len(), 0.0);
+        for v in vertices {
+            // No less than nothing, but for rounding.
+            weights[v] = weights[v].max(0.0);
+            self.weights[v] = if self.buried[v] { 0.0 } else { weights[v] };
+        }
         self.full_weights = weights;
     }
 }

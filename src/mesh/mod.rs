@@ -71,6 +71,9 @@ pub struct Mesh {
     /// Patches that were split since hanging vertices were last found.
     #[serde(skip)]
     touched: Vec<bool>,
+    /// Patches whose weights are not those of their elements any more.
+    #[serde(skip)]
+    stale: Vec<u32>,
     /// The vertices of patches that have more than [`FEW`], by place.
     #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,

@@ -153,6 +153,9 @@ impl Mesh {
             .filter(|of| self.touched[of.patch as usize])
             .for_each(|of| of.hanging = self.hanging(of));
         self.elements = elements;
+        let changed = (0..self.patches.len() as u32)
+            .filter(|patch| first == 0 || self.touched[*patch as usize]);
+        self.stale.extend(changed);
         self.touched.fill(false);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);
