@@ -96,7 +96,7 @@ impl Groups {
     pub fn gather(
         mut self,
         mut receive: impl FnMut(&[u32]) -> Vec<Gather>,
-        differ: impl Fn(&[Gather]) -> bool + Sync,
+        differ: impl Fn(&[(Member, Gather)]) -> bool + Sync,
     ) -> impl Iterator<Item = (u32, Gather)> {
         while !self.open.is_empty() {
             let (members, found) = (&self.members, &self.found);
@@ -118,7 +118,7 @@ impl Groups {
     }
 
     /// Interpolates in groups whose nodes agree, and halves the others.
-    fn settle(&mut self, differ: impl Fn(&[Gather]) -> bool + Sync) {
+    fn settle(&mut self, differ: impl Fn(&[(Member, Gather)]) -> bool + Sync) {
         let (members, found) = (&self.members, &self.found);
         let interpolated: Vec<Option<Vec<Gather>>> = self
             .open
@@ -128,8 +128,7 @@ impl Groups {
                     .clone()
                     .filter_map(|n| Some((members[n], found[n]?)))
                     .collect();
-                let light: Vec<Gather> = nodes.iter().map(|(_, gather)| *gather).collect();
-                (nodes.len() == group.len() || !differ(&light)).then(|| {
+                (nodes.len() == group.len() || !differ(&nodes)).then(|| {
                     group
                         .clone()
                         .map(|n| found[n].unwrap_or_else(|| between(&nodes, &members[n])))
@@ -259,8 +258,8 @@ mod tests {
             let at = nodes.iter().map(|v| (*v as f32 + 0.5) / 100.0);
             at.map(|x| gather(light(x))).collect()
         };
-        let differ = |of: &[Gather]| {
-            let values = of.iter().map(|g| g.irradiance.x);
+        let differ = |of: &[(Member, Gather)]| {
+            let values = of.iter().map(|(_, g)| g.irradiance.x);
             let low = values.clone().fold(f32::INFINITY, f32::min);
             values.fold(f32::NEG_INFINITY, f32::max) - low > most
         };

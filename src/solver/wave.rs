@@ -7,7 +7,7 @@
 use super::course::{ALL, Bounce, Shot, Stage};
 use super::descent::Descent;
 use super::escape::Lost;
-use super::groups::Groups;
+use super::groups::{Groups, Member};
 use super::light::Sign;
 use super::observer::Phase;
 use super::run::{Solver, by_sign};
@@ -199,11 +199,15 @@ impl<'a> Solver<'a> {
             gathers
         };
         let scale = beam.sampler.thresholds.scale;
-        let differ = |light: &[Gather]| {
-            let low = light.iter().map(|g| g.irradiance).reduce(Spectrum::min);
-            let high = light.iter().map(|g| g.irradiance).reduce(Spectrum::max);
-            let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
-            let unit = scale.at(f64::from(high.max_element()));
+        let differ = |nodes: &[(Member, Gather)]| {
+            let arrived = || nodes.iter().map(|(_, gather)| gather.irradiance);
+            let low = arrived().fold(Spectrum::INFINITY, Spectrum::min);
+            let high = arrived().fold(Spectrum::ZERO, Spectrum::max);
+            let known = nodes
+                .iter()
+                .map(|(node, _)| self.light.irradiance[node.vertex as usize]);
+            let local = known.fold(high, Spectrum::max).max_element();
+            let unit = scale.at(f64::from(local));
             f64::from((high - low).max_element()) > UNEVEN * self.options.epsilon_d * unit
         };
         let found = Groups::new(mesh, &receiving).gather(receive, differ);
