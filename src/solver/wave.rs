@@ -29,7 +29,7 @@ const SLICE: usize = 1 << 16;
 pub(super) const EARLY: f64 = 4.0;
 
 /// Light in a group may differ by this many times ε_d. In an element as small it may by more (see `size_exponent`), but that is flat.
-/// With 1 a draft of `staircase2` takes a seventh longer for the same error, with 25 its error grows by a third.
+/// With 1 a draft of `staircase2` takes a fifth longer for the same error, with 25 its error grows by a quarter.
 const UNEVEN: f64 = 5.0;
 
 /// A wave that has arrived at the first patches.
