@@ -91,16 +91,22 @@ impl Mesh {
 
     /// The leaves of a patch.
     pub fn leaves_of(&self, patch: &Patch) -> Vec<u32> {
+        self.cut(patch, 0.0)
+    }
+
+    /// A cut through the quadtree of a patch: the largest elements no longer than `longest`, and leaves where there are none.
+    pub fn cut(&self, patch: &Patch, longest: f64) -> Vec<u32> {
         let mut open: Vec<u32> = patch.roots.clone().rev().collect();
-        let mut leaves = Vec::new();
+        let mut cut = Vec::new();
         while let Some(element) = open.pop() {
             let of = &self.elements[element as usize];
-            open.extend(of.parts().rev());
-            if of.is_leaf() {
-                leaves.push(element);
+            if of.is_leaf() || self.longest_side(element) <= longest {
+                cut.push(element);
+            } else {
+                open.extend(of.parts().rev());
             }
         }
-        leaves
+        cut
     }
 
     /// How many leaves there are: a split makes four elements of one.

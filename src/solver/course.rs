@@ -181,6 +181,7 @@ impl Course {
                 Stage::Waving(wave) => {
                     wave.cells.len() == tile_count(mesh)
                         && wave.arrived.len() == mesh.vertices.len()
+                        && wave.next < patches
                 }
                 Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
             };

@@ -25,9 +25,9 @@ const FLOOR: f64 = 0.1;
 /// It is taken for rough if the source is not this many times its longest side away.
 const NEAR: f64 = 1.0;
 
-/// What all patches reflect together is asked for at all vertices of elements longer than this many of the smallest: it comes from
-/// everywhere, also from what is near.
-const WIDEST: f64 = 4.0;
+/// What all patches reflect together comes from everywhere, also from what is near: it sets out on its way down from elements no longer
+/// than this many of the smallest.
+pub(super) const WIDEST: f64 = 4.0;
 
 /// One shot on its way down.
 pub(super) struct Descent<'a> {
@@ -156,8 +156,7 @@ impl<'a> Descent<'a> {
     /// Whether the source is so near that five points may miss where most of its light falls.
     fn is_near(&self, element: u32) -> bool {
         let Shooter::Patch(source) = self.beam.shooter else {
-            let smallest = self.options.limits.min_size * self.mesh.frame.extent();
-            return self.mesh.longest_side(element) > WIDEST * smallest;
+            return false;
         };
         let centre = self.mesh.elements[element as usize].centre;
         let centre = self.mesh.position(centre);
