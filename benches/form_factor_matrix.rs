@@ -9,7 +9,10 @@
 //! resident memory so far; `-- --streamed` does so with the 40,000 of a closed room, where each pair is worked out twice so that memory does
 //! not grow with the square. Processor time and memory are read from `/proc`; elsewhere they are not known.
 
+mod median;
+
 use glam::DVec3;
+use median::median;
 use radiosity::matrix::{Enclosure, Matrix, Options};
 use radiosity::scene::{Corners, NamedScene, Scene, Sides, Surface};
 use std::convert::Infallible;
@@ -69,11 +72,6 @@ fn measure(scene: &NamedScene, max_area: f64, compare: bool) {
         let matrix = last.expect("there is a round");
         print(tolerance, times.map(median), &matrix, reference.as_ref());
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Time and memory of ever more rows, at the tolerance that gives a tenth of a per cent.

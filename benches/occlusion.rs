@@ -7,6 +7,7 @@
 mod raw;
 
 mod fans;
+mod median;
 #[path = "../tests/visibility/random.rs"]
 #[allow(dead_code)]
 mod random;
@@ -14,6 +15,7 @@ mod random;
 #[allow(dead_code)]
 mod scenes;
 
+use median::median;
 use radiosity::visibility::{
     EngineChoice, Fans, Isa, MAX_FAN, Obvhs, Triangles, Visibility, build,
 };
@@ -69,7 +71,7 @@ fn compare(triangles: &Triangles, fans: &Fans) {
         }
     }
     let mut reference = f64::NAN;
-    for (contender, seconds) in contenders.iter_mut().zip(&mut seconds) {
+    for (contender, seconds) in contenders.iter_mut().zip(seconds) {
         let (time, occluded) = (median(seconds), f64::from((contender.answer)()));
         if contender.is_reference {
             reference = time;
@@ -108,9 +110,4 @@ fn contender<'a>(engine: Box<dyn Visibility>, fans: &'a Fans) -> Contender<'a> {
             masks.iter().map(|mask| mask.count_ones()).sum()
         }),
     }
-}
-
-fn median(seconds: &mut [f64]) -> f64 {
-    seconds.sort_by(f64::total_cmp);
-    seconds[seconds.len() / 2]
 }

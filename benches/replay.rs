@@ -9,7 +9,9 @@
 mod raw;
 
 mod hall;
+mod median;
 
+use median::median;
 use radiosity::mesh::Mesh;
 use radiosity::scene::Scene;
 use radiosity::solver::{Options, Preset, Silent, Solver, occluders};
@@ -151,9 +153,4 @@ fn timed(mut work: impl FnMut()) -> f64 {
     let started = Instant::now();
     work();
     started.elapsed().as_secs_f64()
-}
-
-fn median(mut seconds: Vec<f64>) -> f64 {
-    seconds.sort_by(f64::total_cmp);
-    seconds.get(seconds.len() / 2).copied().unwrap_or(f64::NAN)
 }

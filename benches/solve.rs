@@ -4,7 +4,9 @@
 //! prints medians.
 
 mod hall;
+mod median;
 
+use median::median;
 use radiosity::scene::Scene;
 use radiosity::solution::Solution;
 use radiosity::solver::{Preset, Silent};
@@ -57,7 +59,7 @@ fn scale(name: &str, scene: &Scene, preset: Preset) {
             vertices = solution.report.vertices;
         }
     }
-    let [one, two] = times.map(|times| median(times).expect("there were turns"));
+    let [one, two] = times.map(median);
     println!(
         "{name:14} {preset:<10?} {vertices:8}  {one:12.2}  {two:13.2}  {:5.2}",
         one / two
@@ -82,11 +84,6 @@ fn timed(
     Some((started.elapsed().as_secs_f64(), solution))
 }
 
-fn median(mut times: Vec<f64>) -> Option<f64> {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied()
-}
-
 fn compare(name: &str, scene: &Scene, preset: Preset) {
     let engines = [EngineChoice::Embree, EngineChoice::Obvhs];
     let mut times = [const { Vec::new() }; 2];
@@ -101,12 +98,13 @@ fn compare(name: &str, scene: &Scene, preset: Preset) {
     }
     let medians = times.map(median);
     for (i, engine) in engines.iter().enumerate() {
-        let Some(seconds) = medians[i] else {
+        let seconds = medians[i];
+        if seconds.is_nan() {
             println!("{name:14} {preset:<10?} {engine:8} not built in");
             continue;
-        };
+        }
         let mega = rays[i] as f64 / 1e6;
-        let ratio = medians[0].map_or(f64::NAN, |embree| seconds / embree);
+        let ratio = seconds / medians[0];
         println!(
             "{name:14} {preset:<10?} {engine:8} {seconds:7.2} {mega:6.2} {:8.2}  {ratio:9.2}",
             mega / seconds
