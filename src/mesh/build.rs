@@ -37,7 +37,6 @@ impl Mesh {
             weights: Vec::new(),
             full_weights: Vec::new(),
             touched: Vec::new(),
-            stale: Vec::new(),
             continuation: Default::default(),
             weld: Default::default(),
             at: FxHashMap::default(),
@@ -68,7 +67,6 @@ impl Mesh {
         }
         mesh.split_to_initial_size();
         mesh.finish_topology(0, &[]);
-        mesh.integrate();
         mesh
     }
 

@@ -11,11 +11,8 @@ use rayon::prelude::*;
 const SAG: [f64; 2] = [1.0 / 3.0, 5.0 / 12.0];
 
 impl Mesh {
-    /// Computes the weights of what has changed; to be called after [`Self::finish_topology`].
-    pub fn integrate(&mut self) {
-        let mut patches = std::mem::take(&mut self.stale);
-        patches.sort_unstable();
-        patches.dedup();
+    /// Computes the weights of the vertices of some patches.
+    pub(super) fn integrate(&mut self, patches: &[u32]) {
         let leaves = patches.par_iter().with_min_len(64).flat_map_iter(|patch| {
             let mut leaves = self.leaves_of(&self.patches[*patch as usize]);
             // Any way to the same mesh adds in the same order.

@@ -71,9 +71,6 @@ pub struct Mesh {
     /// Patches that were split since hanging vertices were last found.
     #[serde(skip)]
     touched: Vec<bool>,
-    /// Patches whose weights are not those of their elements any more.
-    #[serde(skip)]
-    stale: Vec<u32>,
     /// The vertices of patches that have more than [`FEW`], by place.
     #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
@@ -129,12 +126,15 @@ impl Mesh {
     /// Takes the vertices of a patch into the index from its `number`th on.
     fn index(&mut self, patch: u32, number: usize) {
         let vertices = &self.patches[patch as usize].vertices;
-        let from = if vertices.len() > FEW + 1 { number } else { 0 };
-        if vertices.len() > FEW {
-            for vertex in &vertices[from..] {
-                let lattice = self.vertices[*vertex as usize].lattice;
-                self.at.insert((patch, lattice), *vertex);
-            }
+        let from = match vertices.len() {
+            0..=FEW => return,
+            // Those before it were few.
+            count if count == FEW + 1 => 0,
+            _ => number,
+        };
+        for vertex in &vertices[from..] {
+            let lattice = self.vertices[*vertex as usize].lattice;
+            self.at.insert((patch, lattice), *vertex);
         }
     }
 

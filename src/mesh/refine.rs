@@ -144,8 +144,8 @@ impl Mesh {
         hanging
     }
 
-    /// Finds hanging vertices, and takes in which of the vertices from `first` on are buried (those not spoken of are open);
-    /// to be called after splits, before light is interpolated.
+    /// Finds hanging vertices, takes in which of the vertices from `first` on are buried (those not spoken of are open), and weighs
+    /// what has changed; to be called after splits, before light is interpolated.
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
         let mut elements = std::mem::take(&mut self.elements);
         let touched = elements.par_iter_mut().with_min_len(1024);
@@ -153,13 +153,14 @@ impl Mesh {
             .filter(|of| self.touched[of.patch as usize])
             .for_each(|of| of.hanging = self.hanging(of));
         self.elements = elements;
-        let changed = (0..self.patches.len() as u32)
-            .filter(|patch| first == 0 || self.touched[*patch as usize]);
-        self.stale.extend(changed);
-        self.touched.fill(false);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);
         self.buried.resize(self.vertices.len(), false);
         self.plan_continuation();
+        // From the first vertex on, all may have been buried or dug out.
+        let changed = |patch: &u32| first == 0 || self.touched[*patch as usize];
+        let changed: Vec<u32> = (0..self.patches.len() as u32).filter(changed).collect();
+        self.integrate(&changed);
+        self.touched.fill(false);
     }
 }

@@ -61,7 +61,6 @@ impl Mesh {
         let buried = std::mem::take(&mut self.buried);
         self.touched = vec![true; patches];
         self.finish_topology(0, &buried);
-        self.integrate();
         Ok(())
     }
 }

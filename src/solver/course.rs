@@ -161,31 +161,27 @@ impl Course {
     /// Checks a course that was read against the mesh that it belongs to. The error says what does not fit.
     pub fn check(&self, mesh: &Mesh) -> Result<(), String> {
         let (patches, elements) = (mesh.patches.len() as u32, mesh.elements.len() as u32);
+        let fits = match &self.stage {
+            Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
+            Stage::Refining(shot) | Stage::Settling(shot) => {
+                let mut levels = 1..=DEEPEST;
+                let fits = match shot.shooter {
+                    ALL => shot.cells.len() == tile_count(mesh),
+                    patch => patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l)),
+                };
+                fits && shot.candidates.iter().all(|e| *e < elements)
+                    && shot.feelers.iter().all(|f| f.patch < patches)
+                    && shot.arrived.len() == mesh.vertices.len()
+            }
+            Stage::Waving(wave) => {
+                wave.cells.len() == tile_count(mesh)
+                    && wave.arrived.len() == mesh.vertices.len()
+                    && wave.next < patches
+            }
+            Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
+        };
         let is_known = |direct: &Direct| direct.irradiance.len() == mesh.vertices.len();
-        let fits = self.direct.as_ref().is_none_or(is_known);
-        let fits = fits
-            && match &self.stage {
-                Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
-                Stage::Refining(shot) | Stage::Settling(shot) => {
-                    let mut levels = 1..=DEEPEST;
-                    let fits = match shot.shooter {
-                        ALL => shot.cells.len() == tile_count(mesh),
-                        patch => {
-                            patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l))
-                        }
-                    };
-                    fits && shot.candidates.iter().all(|e| *e < elements)
-                        && shot.feelers.iter().all(|f| f.patch < patches)
-                        && shot.arrived.len() == mesh.vertices.len()
-                }
-                Stage::Waving(wave) => {
-                    wave.cells.len() == tile_count(mesh)
-                        && wave.arrived.len() == mesh.vertices.len()
-                        && wave.next < patches
-                }
-                Stage::Gathering(of) => of.irradiance.len() == mesh.vertices.len(),
-            };
-        if fits {
+        if fits && self.direct.as_ref().is_none_or(is_known) {
             Ok(())
         } else {
             Err("a state of the solve that does not fit the mesh".into())

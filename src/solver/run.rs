@@ -72,7 +72,6 @@ impl<'a> Solver<'a> {
         mesh.weld_if(options.clusters(&mesh));
         let backing = backing(scene, &mesh);
         mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
-        mesh.integrate();
         let light = Light::new(&mesh);
         let state = (mesh, light, Course::default());
         Self::resume(scene, state, visibility, options, Duration::ZERO)

@@ -95,9 +95,6 @@ impl<'a> Solver<'a> {
         };
         shot.candidates = refinement.pass(&shot.candidates);
         self.course.rays += refinement.rays;
-        if self.mesh.weights.len() < self.mesh.vertices.len() {
-            self.mesh.integrate();
-        }
     }
 
     /// What shoots; made anew from what is kept of it, if need be.

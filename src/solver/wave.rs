@@ -130,10 +130,9 @@ impl<'a> Solver<'a> {
 
     /// The wave arrives at some more vertices.
     pub(super) fn wave(&mut self, mut wave: Wave) {
-        let settled = matches!(wave.kind, Kind::Whole(_));
         let all = match self.radiated.take() {
             Some(all) => all,
-            None => self.radiating(&wave.cells, settled),
+            None => self.radiating(&wave.cells, wave.is_whole()),
         };
         let sampler = self.sampler();
         let beam = Beam {
@@ -193,7 +192,7 @@ impl<'a> Solver<'a> {
             let widest = WIDEST * self.options.limits.min_size * self.mesh.frame.extent();
             return self.mesh.cut(patch, widest);
         }
-        self.mesh.cut(patch, 0.0)
+        self.mesh.leaves_of(patch)
     }
 
     /// Evaluates `beam` at some of the vertices of small patches, from which the others take it. Returns the number of rays.
