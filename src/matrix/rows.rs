@@ -5,7 +5,7 @@ use super::divide::divided;
 use super::facet::Facet;
 use super::{By, Options};
 use crate::geometry::Frame;
-use crate::mesh::split_at_contacts;
+use crate::mesh::{Regions, split_at_contacts};
 use crate::radiometry::{Power, exitance_from_radiance};
 use crate::scene::{NamedScene, Names, Scene, Sides, Surface};
 use rustc_hash::FxHashMap;
@@ -72,7 +72,7 @@ impl Rows {
             .map(|area| divided(scene, area / scene.metres_per_unit.powi(2)));
         let cells = parts.as_ref().unwrap_or(scene);
         let keys = keys(cells, names, options);
-        let pieces = split_at_contacts(cells, frame);
+        let pieces = split_at_contacts(cells, frame, &Regions::default());
 
         // Rows in the order of their first surfaces, the back after the front.
         let mut numbers: FxHashMap<(Key, bool), u32> = FxHashMap::default();

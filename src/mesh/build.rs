@@ -26,7 +26,8 @@ impl Mesh {
     /// `limits.initial_size` holds.
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
         let frame = scene.frame();
-        let pieces = contact::pieces(scene, &frame);
+        let regions = contact::regions(scene, &frame);
+        let pieces = contact::pieces(scene, &frame, &regions);
         let mut mesh = Self {
             frame,
             unsplit_contacts: pieces.unsplit,

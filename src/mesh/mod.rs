@@ -1,6 +1,7 @@
 //! Patches, the quadtree of elements on each, and the vertices that elements share.
 //!
-//! A [`Patch`] is one radiating side of a surface, or of a piece of it where others meet it. Its elements form a quadtree,
+//! A [`Patch`] is one radiating side of a surface, or of a piece of it where others meet it; triangles that continue one another in a
+//! plane are one surface. Its elements form a quadtree,
 //! kept balanced: neighbours differ by one level. Every element has a vertex at each corner and one at its centre, so light is known at 2n + 1 … points without
 //! asking, and the interpolant is linear on the *fan* of triangles around the centre, hanging corners of finer neighbours
 //! included. That fan is the solution: it is what shoots, what is integrated, probed and exported.
@@ -19,7 +20,7 @@ mod restore;
 mod weld;
 
 pub use build::MeshLimits;
-pub use contact::{Piece, Pieces, pieces as split_at_contacts};
+pub use contact::{Piece, Pieces, Regions, pieces as split_at_contacts, regions};
 pub use element::{Element, NONE};
 pub use lattice::{Lattice, UNIT};
 pub use patch::{Patch, SideKey};

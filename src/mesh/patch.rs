@@ -11,9 +11,9 @@ pub type SideKey = [[u64; 3]; 2];
 /// A planar convex polygon that shoots, and carries elements that receive.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Patch {
-    /// Index into `Scene::surfaces`.
+    /// Index into `Scene::surfaces`; the first of several that are meshed as one.
     pub surface: u32,
-    /// The input polygon it lies on.
+    /// The input polygon it lies on: that of `surface`.
     pub polygon: u32,
     /// Corners in the frame, counter-clockwise seen from the radiating side; a triangle repeats its first.
     corners: [DVec3; 4],

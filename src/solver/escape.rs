@@ -18,6 +18,8 @@ pub(super) struct Backing {
     pub sides: Sides,
     /// Index into `Scene::surfaces`.
     pub surface: u32,
+    /// The first surface of those that are meshed as one with it.
+    pub region: u32,
 }
 
 /// Whether a ray has ended on a side that does not radiate.

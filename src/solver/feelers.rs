@@ -128,7 +128,7 @@ fn cast(
                 through.push(probe);
             } else if let Some((patch, at)) = patch_at(
                 mesh,
-                backing[hit.triangle as usize].surface,
+                &backing[hit.triangle as usize],
                 point,
                 probe.direction,
             ) {
@@ -170,19 +170,23 @@ fn places(patch: &Patch) -> impl Iterator<Item = DVec3> + '_ {
     })
 }
 
-/// The patch of a surface that has a point on the side which `direction` meets, and the coordinates there.
+/// The patch behind a triangle that has a point on the side which `direction` meets, and the coordinates there.
 fn patch_at(
     mesh: &Mesh,
-    surface: u32,
+    behind: &Backing,
     point: DVec3,
     direction: DVec3,
 ) -> Option<(u32, (f64, f64))> {
-    let first = mesh.patches.partition_point(|p| p.surface < surface);
-    let of = mesh.patches[first..]
-        .iter()
-        .take_while(|p| p.surface == surface);
-    (first as u32..)
-        .zip(of)
+    // Those of the region, or of the surface alone where that could not be tiled.
+    let surfaces = [behind.region, behind.surface].into_iter();
+    let patches = surfaces.flat_map(|surface| {
+        let first = mesh.patches.partition_point(|p| p.surface < surface);
+        let of = mesh.patches[first..]
+            .iter()
+            .take_while(move |p| p.surface == surface);
+        (first as u32..).zip(of)
+    });
+    patches
         .filter(|(_, patch)| patch.normal.dot(direction) < 0.0)
         .find_map(|(number, patch)| {
             let (u, v) = patch.coordinates(point);

@@ -55,6 +55,7 @@ impl<'a> OpenLight<'a> {
                     false => Sides::Front,
                 },
                 surface: patch.surface,
+                region: patch.surface,
             };
             std::iter::repeat_n(backing, patch.corners().len() - 2)
         });

@@ -16,7 +16,7 @@ use super::tiling::Tiling;
 use super::volley::{side_by_side, strongest};
 use super::wave::EARLY;
 use crate::geometry::polygon::vector_area;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, regions};
 use crate::radiometry::Power;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
@@ -281,6 +281,7 @@ impl<'a> Solver<'a> {
 /// What stands behind each triangle of the scene's [`occluders`].
 fn backing(scene: &Scene, mesh: &Mesh) -> Vec<Backing> {
     let mut backing = Vec::new();
+    let regions = regions(scene, &mesh.frame);
     for (number, surface) in (0..).zip(&scene.surfaces) {
         let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
         let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
@@ -288,6 +289,7 @@ fn backing(scene: &Scene, mesh: &Mesh) -> Vec<Backing> {
             normal: vector_area(&corners).normalize_or(DVec3::Z),
             sides: surface.sides,
             surface: number,
+            region: regions.first(number),
         };
         backing.extend(std::iter::repeat_n(side, corners.len() - 2));
     }

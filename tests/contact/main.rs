@@ -4,4 +4,5 @@ mod contacts;
 mod leaks;
 mod none;
 mod random;
+mod regions;
 mod setup;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use radiosity::geometry::polygon::{diameter, vector_area};
-use radiosity::mesh::{Mesh, MeshLimits};
+use radiosity::mesh::{Mesh, MeshLimits, Regions, regions};
 use radiosity::scene::{Corners, Material, Scene, Sides, Surface};
 
 /// A scene of the given triangles and quads, each with vertices of its own; all white, from the front.
@@ -167,9 +167,14 @@ pub fn pieces(scene: &Scene) -> Pieces {
             .collect();
         of[patch.surface as usize].push(corners);
     }
+    let regions = regions(scene, &mesh.frame);
     let pieces = Pieces { mesh, of };
     for number in 0..scene.surfaces.len() {
-        assert_tiled(scene, &pieces, number);
+        match members(&regions, scene, number)[..] {
+            [] => assert!(pieces.of[number].is_empty(), "surface {number}"),
+            [_] => assert_tiled(scene, &pieces, number),
+            ref members => assert_tiled_together(scene, &pieces, members),
+        }
     }
     pieces
 }
@@ -182,6 +187,41 @@ pub fn corners(scene: &Scene, surface: usize) -> Vec<DVec3> {
         .iter()
         .map(|v| scene.vertices[*v as usize])
         .collect()
+}
+
+/// The surfaces of the region of which a surface is the first, itself alone if it is in none; none if another is the first.
+fn members(regions: &Regions, scene: &Scene, number: usize) -> Vec<usize> {
+    let is_member = |other: &usize| regions.first(*other as u32) as usize == number;
+    (0..scene.surfaces.len()).filter(is_member).collect()
+}
+
+/// The pieces of a region are convex, face as its members do, have their centres on them and their area.
+fn assert_tiled_together(scene: &Scene, pieces: &Pieces, members: &[usize]) {
+    let of = &pieces.of[members[0]];
+    let members: Vec<Vec<DVec3>> = members.iter().map(|m| corners(scene, *m)).collect();
+    let area: DVec3 = members.iter().map(|m| vector_area(m)).sum();
+    let normal = area.normalize();
+    let sum: f64 = of.iter().map(|piece| vector_area(piece).dot(normal)).sum();
+    assert!(
+        (sum / area.length() - 1.0).abs() < 1e-6,
+        "{sum} of {}",
+        area.length()
+    );
+    for piece in of {
+        let n = piece.len();
+        let turns = (0..n).map(|i| {
+            (piece[(i + 1) % n] - piece[i]).cross(piece[(i + 2) % n] - piece[(i + 1) % n])
+        });
+        assert!(
+            turns.map(|turn| turn.dot(normal)).all(|turn| turn > 0.0),
+            "{piece:?}"
+        );
+        let centre = piece.iter().sum::<DVec3>() / n as f64;
+        let on_one = members
+            .iter()
+            .any(|m| depth(m, centre, normal) > -1e-9 * diameter(m));
+        assert!(on_one, "{piece:?}");
+    }
 }
 
 /// Pieces are convex and oriented as their surface, lie within it and have its area; the sides on its border make up its
@@ -326,10 +366,10 @@ impl Pieces {
         }
     }
 
-    /// Checks that no surface is split.
+    /// Checks that no surface is split; those that are part of others have no pieces.
     pub fn assert_whole(&self) {
         assert!(
-            self.of.iter().all(|pieces| pieces.len() == 1),
+            self.of.iter().all(|pieces| pieces.len() <= 1),
             "{:?}",
             self.of
         );

@@ -1,10 +1,15 @@
 //! A surface with coordinates in its plane.
 
+use super::border::Border;
 use crate::geometry::polygon;
 use crate::mesh::Patch;
 use glam::{DVec2, DVec3};
 
-/// A triangle or convex quad, seen from its front: in its plane it runs counter-clockwise.
+/// How many times the reach a rectangle is larger than the region in it, so that nothing of the region snaps to it.
+const MARGIN: f64 = 8.0;
+
+/// A triangle or convex quad, seen from its front: in its plane it runs counter-clockwise. Or a region of triangles, and then the
+/// corners are those of a rectangle around it.
 pub(super) struct Face {
     corners: [DVec3; 4],
     flat: [DVec2; 4],
@@ -18,6 +23,8 @@ pub(super) struct Face {
     pub reach: f64,
     /// Points this close to the plane lie on it: `reach`, or more where the corners themselves miss the plane.
     pub thickness: f64,
+    /// Where a region ends; all other faces end at their sides.
+    pub border: Option<Border>,
 }
 
 impl Face {
@@ -43,6 +50,7 @@ impl Face {
             axes: [u, v],
             reach,
             thickness: reach,
+            border: None,
         };
         face.flat = all.map(|corner| face.flatten(corner));
         for side in 0..count {
@@ -55,6 +63,53 @@ impl Face {
             .fold(0.0, f64::max);
         face.thickness = reach + 2.0 * miss;
         Some(face)
+    }
+
+    /// A region by the sides on its border and its area along its normal; `None` if all of it is border.
+    pub fn around(sides: &[[DVec3; 2]], vector_area: DVec3, reach: f64) -> Option<Self> {
+        let normal = vector_area.try_normalize()?;
+        let along = |side: &&[DVec3; 2]| side[0].distance_squared(side[1]);
+        let [a, b] = sides.iter().max_by(|x, y| along(x).total_cmp(&along(y)))?;
+        let u = (*b - *a).reject_from_normalized(normal).try_normalize()?;
+        let v = normal.cross(u);
+        let places = sides.iter().flatten().map(|p| {
+            let to = *p - *a;
+            DVec2::new(u.dot(to), v.dot(to))
+        });
+        let (low, high) = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+        let (low, high) = (low - MARGIN * reach, high + MARGIN * reach);
+        let corners = [
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ];
+        let mut face = Self::new(&corners.map(|p| *a + u * p.x + v * p.y), reach)?;
+        let miss = sides
+            .iter()
+            .flatten()
+            .map(|p| face.height(*p).abs())
+            .fold(0.0, f64::max);
+        face.thickness = reach + 2.0 * miss;
+        face.border = Some(Border::new(sides, vector_area, |p| face.flatten(p)));
+        Some(face)
+    }
+
+    /// Its normal, as long as its area.
+    pub fn vector_area(&self) -> DVec3 {
+        match &self.border {
+            Some(border) => border.vector_area,
+            None => polygon::vector_area(self.corners()),
+        }
+    }
+
+    /// Whether a point of the plane that is on no border belongs to the face.
+    pub fn encloses(&self, point: DVec2) -> bool {
+        self.border
+            .as_ref()
+            .is_none_or(|border| border.encloses(point))
     }
 
     /// Corners in the plane.
@@ -119,9 +174,12 @@ impl Face {
         (a.lerp(b, place), self.corners[side].lerp(end, place))
     }
 
-    /// From the plane to the frame, onto the bilinear surface of a quad whose corners miss their plane.
+    /// From the plane to the frame: to the very corner of a region, or onto the bilinear surface of a quad whose corners miss their plane.
     pub fn lift(&self, point: DVec2) -> DVec3 {
         let flat = self.centre + self.axes[0] * point.x + self.axes[1] * point.y;
+        if let Some(border) = &self.border {
+            return border.corner(point).unwrap_or(flat);
+        }
         if self.count == 3 {
             return flat;
         }

@@ -17,7 +17,7 @@ use super::arrange::{Arrangement, Node};
 use super::face::Face;
 use super::lines::Line;
 use super::quads::{Tile, flatness};
-use super::tile::{border, tile};
+use super::tile::{sides, tile};
 use glam::DVec2;
 use rustc_hash::FxHashSet;
 
@@ -66,7 +66,7 @@ impl<'a> Round<'a> {
     fn new(face: &'a Face, arrangement: Arrangement) -> Self {
         let inner = arrangement.edges.len();
         let mut segments = arrangement.edges;
-        segments.extend(border(face, &arrangement.nodes));
+        segments.extend(sides(face, &arrangement.nodes));
         let middles = vec![None; segments.len()];
         Self {
             face,

@@ -1,9 +1,11 @@
-//! Lines of contact: surfaces that meet, touch or interpenetrate are split along the line before they are meshed.
+//! Lines of contact: surfaces that meet, touch or interpenetrate are split along the line before they are meshed. Triangles that
+//! continue one another in a plane are one surface before that.
 //!
 //! An element that lies partly under a box would be interpolated across the box's edge, and light or darkness would leak
 //! along it. So each surface whose inside is touched or crossed by others becomes several [`Piece`]s: convex triangles and
 //! quads that tile it and whose sides cover every line of contact. All others stay one piece.
 //!
+//! 0. [`regions`]: which triangles are one surface; [`border`]: where that ends.
 //! 1. [`near`]: a spatial index tells which surfaces come near one another.
 //! 2. [`lines`]: where they meet the inside of a surface, as segments in its plane.
 //! 3. [`arrange`]: the segments, snapped and split until they meet in common ends only; [`straighten`] joins those that
@@ -14,12 +16,14 @@
 //! Everything happens in the frame, in double precision, with one tolerance, [`REACH`].
 
 mod arrange;
+mod border;
 mod face;
 mod grade;
 mod lines;
 mod near;
 mod outline;
 mod quads;
+mod regions;
 mod straighten;
 mod tile;
 
@@ -35,6 +39,8 @@ use outline::Outlines;
 use rayon::prelude::*;
 use straighten::straighten;
 use tile::tile;
+
+pub use regions::Regions;
 
 /// Surfaces closer than this fraction of the scene's extent touch, and points closer than it are one.
 ///
@@ -57,7 +63,7 @@ const ALIGNED: f64 = 0.99;
 /// A convex part of a surface that no line of contact crosses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Index into `Scene::surfaces`.
+    /// Index into `Scene::surfaces`; the lowest of several that are one.
     pub surface: u32,
     /// Corners in the frame, counter-clockwise like the surface; a triangle repeats its first.
     corners: [DVec3; 4],
@@ -94,65 +100,125 @@ pub struct Pieces {
     pub unsplit: usize,
 }
 
-/// Splits the surfaces of a scene along their lines of contact; the pieces' corners are in the frame.
-pub fn pieces(scene: &Scene, frame: &Frame) -> Pieces {
+/// The triangles of a scene that are one surface.
+pub fn regions(scene: &Scene, frame: &Frame) -> Regions {
     let positions = scene.positions_in(frame);
-    let reach = REACH * frame.extent();
-    let neighbours = Neighbours::new(&scene.surfaces, &positions);
-    let outlines = Outlines::new(&scene.surfaces);
-    let whole = |(number, surface): (u32, &Surface)| {
-        Piece::new(
-            number,
-            &corners_of(surface, &positions),
-            outlines.of(surface),
-        )
-    };
+    Regions::of_triangles(&scene.surfaces, &positions, REACH * frame.extent())
+}
 
+/// Splits the surfaces of a scene along their lines of contact, those of a region as one; the pieces' corners are in the frame.
+pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
+    let splitter = Splitter::new(scene, frame, regions);
+    let heads = (0..scene.surfaces.len() as u32).into_par_iter();
     // Most surfaces touch no others: keep only what came of those that do.
-    let touched: Vec<(u32, Option<Vec<Piece>>)> = (0..scene.surfaces.len() as u32)
-        .into_par_iter()
-        .filter_map(|number| {
-            let surface = &scene.surfaces[number as usize];
-            let face = Face::new(&corners_of(surface, &positions), reach)?;
-            let near = neighbours
-                .of(face.corners(), reach + face.thickness)
-                .filter(|other| *other != number);
-            let others = near.map(|other| scene.surfaces[other as usize].corners);
-            let lines = lines::lines(&face, others, &positions);
-            let split = || {
-                split(
-                    &face,
-                    number,
-                    &lines,
-                    outlines.of(surface),
-                    FINE * frame.extent(),
-                )
-            };
-            (!lines.is_empty()).then(|| (number, split()))
+    let mut cut: Vec<(u32, Option<Vec<Piece>>)> = heads
+        .filter(|number| regions.first(*number) == *number)
+        .flat_map_iter(|number| match regions.members(number) {
+            Some(members) => splitter.together(members),
+            None => splitter.alone(number).into_iter().collect(),
         })
         .collect();
+    cut.par_sort_unstable_by_key(|(number, _)| *number);
 
     let mut pieces = Pieces::default();
-    let mut touched = touched.into_iter().peekable();
-    for (number, surface) in (0..).zip(&scene.surfaces) {
-        match touched.next_if(|(of, _)| *of == number) {
+    let mut cut = cut.into_iter().peekable();
+    for number in 0..scene.surfaces.len() as u32 {
+        match cut.next_if(|(of, _)| *of == number) {
             Some((_, Some(tiles))) => pieces.list.extend(tiles),
             failed => {
                 pieces.unsplit += usize::from(failed.is_some());
-                pieces.list.push(whole((number, surface)));
+                pieces.list.push(splitter.whole(number));
             }
         }
     }
     pieces
 }
 
-fn corners_of(surface: &Surface, positions: &[DVec3]) -> Vec<DVec3> {
-    surface
-        .corners
-        .indices()
-        .iter()
-        .map(|v| positions[*v as usize])
-        .collect()
+/// What it takes to split surfaces.
+struct Splitter<'a> {
+    surfaces: &'a [Surface],
+    regions: &'a Regions,
+    positions: Vec<DVec3>,
+    neighbours: Neighbours,
+    outlines: Outlines,
+    reach: f64,
+    fine: f64,
+}
+
+impl<'a> Splitter<'a> {
+    fn new(scene: &'a Scene, frame: &Frame, regions: &'a Regions) -> Self {
+        let positions = scene.positions_in(frame);
+        Self {
+            surfaces: &scene.surfaces,
+            regions,
+            neighbours: Neighbours::new(&scene.surfaces, &positions),
+            positions,
+            outlines: Outlines::new(&scene.surfaces),
+            reach: REACH * frame.extent(),
+            fine: FINE * frame.extent(),
+        }
+    }
+
+    fn corners(&self, surface: u32) -> Vec<DVec3> {
+        let corners = self.surfaces[surface as usize].corners;
+        let corners = corners.indices().iter();
+        corners.map(|v| self.positions[*v as usize]).collect()
+    }
+
+    fn whole(&self, surface: u32) -> Piece {
+        let outline = self.outlines.of(&self.surfaces[surface as usize]);
+        Piece::new(surface, &self.corners(surface), outline)
+    }
+
+    /// The pieces of a surface that others touch, `None` if it cannot be split; nothing for one that none touches.
+    fn alone(&self, surface: u32) -> Option<(u32, Option<Vec<Piece>>)> {
+        let face = Face::new(&self.corners(surface), self.reach)?;
+        let lines = self.lines(&face, surface);
+        let outline = self.outlines.of(&self.surfaces[surface as usize]);
+        (!lines.is_empty()).then(|| (surface, split(&face, surface, &lines, outline, self.fine)))
+    }
+
+    /// The pieces of a region, by its first surface; those of its members if it cannot be tiled.
+    fn together(&self, members: &[u32]) -> Vec<(u32, Option<Vec<Piece>>)> {
+        match self.region(members) {
+            Some(pieces) => {
+                let others = members[1..]
+                    .iter()
+                    .map(|member| (*member, Some(Vec::new())));
+                std::iter::once((members[0], Some(pieces)))
+                    .chain(others)
+                    .collect()
+            }
+            None => members
+                .iter()
+                .filter_map(|member| self.alone(*member))
+                .collect(),
+        }
+    }
+
+    fn region(&self, members: &[u32]) -> Option<Vec<Piece>> {
+        let at = |v: u32| self.positions[v as usize];
+        let border = regions::border(members.iter().map(|m| &self.surfaces[*m as usize]));
+        let sides: Vec<[DVec3; 2]> = border.iter().map(|side| side.map(at)).collect();
+        let areas = members
+            .iter()
+            .map(|m| polygon::vector_area(&self.corners(*m)));
+        let face = Face::around(&sides, areas.sum(), self.reach)?;
+        let mut lines = face.border.as_ref()?.lines.clone();
+        lines.extend(self.lines(&face, members[0]));
+        split(&face, members[0], &lines, [true; 4], self.fine)
+    }
+
+    /// Where surfaces of other regions meet a face.
+    fn lines(&self, face: &Face, first: u32) -> Vec<Line> {
+        let near = self
+            .neighbours
+            .of(face.corners(), self.reach + face.thickness);
+        let others = near
+            .filter(|other| self.regions.first(*other) != first)
+            .map(|other| self.surfaces[other as usize].corners);
+        lines::lines(face, others, &self.positions)
+    }
 }
 
 /// Splits a face along lines; `None` if that fails.
@@ -207,8 +273,12 @@ fn tiled(
             [false; 4],
         );
         for (side, slot) in piece.outline.iter_mut().enumerate().take(corners.len()) {
-            let [a, b] = [side, side + 1].map(|i| nodes[corners[i % corners.len()] as usize].sides);
-            *slot = (0..corner_count).any(|border| a & b & 1 << border != 0 && outline[border]);
+            let [a, b] = [side, side + 1].map(|i| nodes[corners[i % corners.len()] as usize]);
+            let on = |border: usize| a.sides & b.sides & 1 << border != 0;
+            *slot = match &face.border {
+                Some(border) => border.runs_along([a.at, b.at], face.reach),
+                None => (0..corner_count).any(|side| on(side) && outline[side]),
+            };
         }
         piece
     });
@@ -218,7 +288,7 @@ fn tiled(
 
 /// Whether pieces face as their surface does and have its area.
 fn tile_exactly(face: &Face, pieces: &[Piece]) -> bool {
-    let whole = polygon::vector_area(face.corners());
+    let whole = face.vector_area();
     let direction = whole.normalize_or_zero();
     let parts: Vec<DVec3> = pieces
         .iter()

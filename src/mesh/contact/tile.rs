@@ -22,7 +22,7 @@ impl HasPosition for Corner {
     }
 }
 
-/// The triangles, as nodes of the arrangement, counter-clockwise; `None` if its edges cross by a hair.
+/// The triangles on the face, as nodes of the arrangement, counter-clockwise; `None` if its edges cross by a hair.
 pub(super) fn triangulate(face: &Face, arrangement: &Arrangement) -> Option<Vec<[u32; 3]>> {
     let nodes = &arrangement.nodes;
     let corner = |(node, number): (&Node, u32)| {
@@ -30,7 +30,7 @@ pub(super) fn triangulate(face: &Face, arrangement: &Arrangement) -> Option<Vec<
         Corner { at, node: number }
     };
     let corners = nodes.iter().zip(0..).map(corner).collect();
-    let border = border(face, nodes);
+    let border = sides(face, nodes);
     let edges = arrangement
         .edges
         .iter()
@@ -48,14 +48,18 @@ pub(super) fn triangulate(face: &Face, arrangement: &Arrangement) -> Option<Vec<
         return None;
     }
     // Rounding bends the border by a hair, which makes triangles without area along it.
-    let sides = |node: u32| nodes[node as usize].sides;
-    let along_border = |[a, b, c]: &[u32; 3]| sides(*a) & sides(*b) & sides(*c) != 0;
+    let on = |node: u32| nodes[node as usize].sides;
+    let along_border = |[a, b, c]: &[u32; 3]| on(*a) & on(*b) & on(*c) != 0;
+    let on_face = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|node| nodes[node as usize].at);
+        face.encloses((a + b + c) / 3.0)
+    };
     let triangles = triangulation
         .inner_faces()
         .map(|face| face.vertices().map(|vertex| vertex.data().node));
     Some(
         triangles
-            .filter(|triangle| !along_border(triangle))
+            .filter(|triangle| !along_border(triangle) && on_face(triangle))
             .collect(),
     )
 }
@@ -70,9 +74,12 @@ pub(super) fn tile(face: &Face, arrangement: &Arrangement) -> Option<Vec<Tile>> 
     }))
 }
 
-/// The border of the face, from node to node.
-pub(super) fn border(face: &Face, nodes: &[Node]) -> Vec<[u32; 2]> {
+/// The sides of the face, from node to node; none for a region, whose border is in the arrangement.
+pub(super) fn sides(face: &Face, nodes: &[Node]) -> Vec<[u32; 2]> {
     let mut border = Vec::new();
+    if face.border.is_some() {
+        return border;
+    }
     for side in 0..face.flat().len() {
         let [start, end] = face.side(side);
         let along = |node: u32| (nodes[node as usize].at - start).dot(end - start);
