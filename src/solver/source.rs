@@ -4,6 +4,7 @@ use super::light::{Light, Sign};
 use super::options::{Options, Shooting};
 use super::run::Solver;
 use crate::form_factor::{Source, SourceThresholds};
+use crate::geometry::polygon::vector_area;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
@@ -54,35 +55,61 @@ pub(super) fn cells_of(
 }
 
 /// The same on a given level; on level 0 the mean of the patch.
-pub(super) fn cells_on(
+fn cells_on(
     mesh: &Mesh,
     light: &Light,
-    (patch, sign): (usize, Sign),
+    shooter: (usize, Sign),
     levels: u32,
     shooting: Shooting,
 ) -> Vec<Spectrum> {
+    let count = 1 << (2 * levels);
+    if shooting == Shooting::Mean {
+        return vec![mean_of(mesh, light, shooter).as_vec3(); count];
+    }
+    let triangle = mesh.patches[shooter.0].is_triangle();
+    means_on(mesh, light, shooter, &cells_at(triangle, levels))
+}
+
+/// Mean unshot radiosity of a patch, buried parts included.
+fn mean_of(mesh: &Mesh, light: &Light, (patch, sign): (usize, Sign)) -> Power {
+    let of = &mesh.patches[patch];
+    let full = |v: &u32| {
+        light.unshot_radiosity(mesh, *v, sign).as_dvec3() * mesh.full_weights[*v as usize]
+    };
+    of.vertices.iter().map(full).sum::<Power>() / of.area
+}
+
+/// Mean unshot radiosity of each of the cells that a patch is cut into; together they have the power of the patch.
+pub(super) fn means_on(
+    mesh: &Mesh,
+    light: &Light,
+    (patch, sign): (usize, Sign),
+    cells: &[Quad],
+) -> Vec<Spectrum> {
+    let mean = mean_of(mesh, light, (patch, sign));
+    if cells.len() == 1 || light.is_own(mesh, patch, sign) {
+        return vec![mean.as_vec3(); cells.len()];
+    }
     let of = &mesh.patches[patch];
     let radiosity = |v: u32| light.unshot_radiosity(mesh, v, sign);
-    let full = |v: &u32| radiosity(*v).as_dvec3() * mesh.full_weights[*v as usize];
-    let mean = of.vertices.iter().map(full).sum::<Power>() / of.area;
-    if levels == 0 || shooting == Shooting::Mean || light.is_own(mesh, patch, sign) {
-        return vec![mean.as_vec3(); 1 << (2 * levels)];
-    }
-    let mut cells = interpolated_cells(mesh, patch, levels, &radiosity);
-    let areas = areas(of, levels);
-    let weighted = cells
+    let mut means: Vec<Spectrum> = cells
+        .par_iter()
+        .with_min_len(64)
+        .map(|cell| cell_mean(mesh, patch, cell, &radiosity, 2))
+        .collect();
+    let weighted = means
         .iter()
-        .zip(&areas)
-        .map(|(b, area)| b.as_dvec3() * *area);
+        .zip(areas(of, cells))
+        .map(|(b, area)| b.as_dvec3() * area);
     let shot = weighted.sum::<Power>() / of.area;
     // Where the cells missed nearly all of it, all have the mean.
     let missed = shot.cmple(mean * 1e-3);
     let correction = Power::select(missed, Power::ZERO, mean / shot).as_vec3();
     let instead = Power::select(missed, mean, Power::ZERO).as_vec3();
-    cells
+    means
         .iter_mut()
         .for_each(|cell| *cell = *cell * correction + instead);
-    cells
+    means
 }
 
 /// The cells of a level, each by its three or four corners in the coordinates of the patch.
@@ -90,19 +117,16 @@ pub(super) fn cells_at(triangle: bool, levels: u32) -> Vec<Quad> {
     subdivide(vec![root(triangle)], triangle, levels)
 }
 
-/// Mean unshot radiosity of each cell of the deepest level, in the pyramid's order.
-fn interpolated_cells(
-    mesh: &Mesh,
-    patch: usize,
-    levels: u32,
-    radiosity: &(impl Fn(u32) -> Spectrum + Sync),
-) -> Vec<Spectrum> {
-    let triangle = mesh.patches[patch].is_triangle();
-    let cells = cells_at(triangle, levels);
+/// The cells of a quad in columns and rows.
+pub(super) fn cells_in(columns: u32, rows: u32) -> Vec<Quad> {
+    let part = |number: u32, of: u32| f64::from(number) / f64::from(of);
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     cells
-        .par_iter()
-        .with_min_len(64)
-        .map(|cell| cell_mean(mesh, patch, cell, radiosity, 2))
+        .map(|(column, row)| {
+            let [from, to] = [column, column + 1].map(|number| part(number, columns));
+            let [low, high] = [row, row + 1].map(|number| part(number, rows));
+            [[from, low], [to, low], [to, high], [from, high]]
+        })
         .collect()
 }
 
@@ -160,7 +184,12 @@ fn cell_mean(
     let corners = &cell[..count as usize];
     let [u, v] = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / count);
     let leaf = mesh.leaf_at(patch as u32, u, v);
-    let side = (cell[1][0] - cell[0][0]).hypot(cell[1][1] - cell[0][1]);
+    let [width, height] = [0, 1].map(|i| {
+        let along = corners.iter().map(|c| c[i]);
+        let (low, high) = along.fold((1.0, 0.0), |(low, high), x| (x.min(low), x.max(high)));
+        high - low
+    });
+    let side = f64::max(width, height);
     if finer > 0 && mesh.unit_side(leaf) < 0.9 * side {
         return parts(cell, triangle)
             .iter()
@@ -172,19 +201,16 @@ fn cell_mean(
     mesh.interpolated(leaf, point, radiosity)
 }
 
-/// The areas of the cells. Those of triangles and parallelograms are all the same.
-fn areas(of: &Patch, levels: u32) -> Vec<f64> {
-    let count = 1 << (2 * levels);
+/// The areas of the cells that a patch is cut into. Those of triangles and parallelograms are all the same.
+fn areas(of: &Patch, cells: &[Quad]) -> Vec<f64> {
     if let [a, b, c, d] = *of.corners()
         && (a + c).distance(b + d) > 1e-9 * a.distance(c)
     {
-        let geometry = Source::new(
-            of.corners(),
-            of.normal,
-            levels,
-            &vec![Spectrum::ZERO; count],
-        );
-        return geometry.finest().map(|(cell, _)| cell.area()).collect();
+        let corners = |cell: &Quad| cell.map(|[u, v]| of.position_at(u, v));
+        return cells
+            .iter()
+            .map(|cell| vector_area(&corners(cell)).length())
+            .collect();
     }
-    vec![of.area / count as f64; count]
+    vec![of.area / cells.len() as f64; cells.len()]
 }
