@@ -84,9 +84,8 @@ impl<'a> Solver<'a> {
     pub(super) fn begin_wave(&mut self, powers: &[Power], after: Option<Bounce>) {
         let unshot = by_sign(powers);
         let of = unshot.map(Power::element_sum);
-        let sign = if of[0] >= of[1] { 0 } else { 1 };
-        let power = of[sign] / self.emitted().element_sum();
-        let sign = Sign::ALL[sign];
+        let stronger = if of[0] >= of[1] { 0 } else { 1 };
+        let (sign, sent) = (Sign::ALL[stronger], unshot[stronger]);
         let tiling = self.tiling();
         let cells = tiling.unshot(&self.mesh, &self.light, sign);
         self.tiling = Some(tiling);
@@ -94,11 +93,12 @@ impl<'a> Solver<'a> {
             // The mesh is refined: its neighbourhoods will be others.
             self.neighbourhoods = None;
             self.course.direct = None;
+            let power = sent.element_sum() / self.emitted().element_sum();
             self.set_out(Kind::Unshot(sign), cells, power);
         } else {
             let unshot = unshot[0] - unshot[1];
             let ratio = after.map(|bounce| bounce.ratio_to(unshot));
-            self.bounce(sign, &cells, power, Bounce { unshot, ratio });
+            self.bounce(sign, &cells, sent, Bounce { unshot, ratio });
         }
     }
 
