@@ -17,6 +17,9 @@ const SMOOTH: f64 = 35.0;
 /// … and curved if they differ by more than this: nobody puts a wall exactly on the side of a facet.
 const CURVED: f64 = 0.5;
 
+/// Patches shorter than this many times the smallest element are small.
+const SMALL: f64 = 8.0;
+
 /// A site whose patches face away from its normal by more than this cosine is none.
 const FACING: f64 = 0.3;
 
@@ -185,7 +188,7 @@ impl Mesh {
     fn belong_together(&self, a: &Patch, b: &Patch) -> bool {
         let cosine = a.normal.dot(b.normal);
         let curved = cosine < CURVED.to_radians().cos();
-        let small = 4.0 * self.limits.min_size * self.frame.extent();
+        let small = SMALL * self.limits.min_size * self.frame.extent();
         let is_small = |patch: &Patch| crate::geometry::polygon::diameter(patch.corners()) < small;
         let facing = cosine >= SMOOTH.to_radians().cos();
         facing && (curved || is_small(a) && is_small(b)) && a.exitance == b.exitance

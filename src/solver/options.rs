@@ -156,7 +156,7 @@ impl Preset {
                 limits: MeshLimits {
                     initial_size: 0.25,
                     max_depth: 8,
-                    min_size: 0.01,
+                    min_size: 0.005,
                 },
                 meshing_power: 0.004,
                 epsilon_fd: 0.008,

@@ -5,6 +5,7 @@ use super::common::shapes::{add_cuboid, add_grey, add_level, add_quad, add_trian
 use super::resume::{in_sessions, settings};
 use super::{bits, bundled, draft, engines, solved, solved_by};
 use glam::DVec3;
+use radiosity::geometry::polygon::diameter;
 use radiosity::scene::{Scene, Sides};
 use radiosity::solution::Solution;
 use radiosity::solver::{Options, Preset};
@@ -174,7 +175,8 @@ fn by_place(solution: &Solution) -> BTreeMap<([u64; 3], bool), Vec<f32>> {
             .corners()
             .iter()
             .find(|c| **c == mesh.position(vertex as u32));
-        if let Some(corner) = corner.filter(|_| patch.is_triangle()) {
+        let is_facet = diameter(patch.corners()) < 0.1 * mesh.frame.extent();
+        if let Some(corner) = corner.filter(|_| is_facet) {
             let key = (corner.to_array().map(f64::to_bits), patch.back);
             found
                 .entry(key)
