@@ -34,12 +34,16 @@ impl Border {
 
     /// Whether a segment runs along the border.
     pub fn runs_along(&self, [a, b]: Line, reach: f64) -> bool {
-        let middle = a.midpoint(b);
-        self.lines.iter().any(|[from, to]| {
-            let along = *to - *from;
-            let place = (middle - *from).dot(along) / along.length_squared();
-            (0.0..=1.0).contains(&place) && from.lerp(*to, place).distance(middle) <= reach
-        })
+        let is_on = |point: DVec2| {
+            self.lines.iter().any(|[from, to]| {
+                let along = *to - *from;
+                let place = (point - *from).dot(along) / along.length_squared();
+                (0.0..=1.0).contains(&place) && from.lerp(*to, place).distance(point) <= reach
+            })
+        };
+        [0.25, 0.5, 0.75]
+            .iter()
+            .all(|place| is_on(a.lerp(b, *place)))
     }
 
     /// The place in the frame of an end of its lines.

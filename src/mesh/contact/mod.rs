@@ -36,6 +36,7 @@ use grade::grade;
 use lines::Line;
 use near::Neighbours;
 use outline::Outlines;
+use quads::{FAIR, flatness};
 use rayon::prelude::*;
 use straighten::straighten;
 use tile::tile;
@@ -204,8 +205,17 @@ impl<'a> Splitter<'a> {
             .iter()
             .map(|m| polygon::vector_area(&self.corners(*m)));
         let face = Face::around(&sides, areas.sum(), self.reach)?;
-        let mut lines = face.border.as_ref()?.lines.clone();
-        lines.extend(self.lines(&face, members[0]));
+        let around = face.border.as_ref()?;
+        let met = self.lines(&face, members[0]);
+        // Most regions are two halves of a quad that others meet on its border only.
+        let free = |line: &Line| around.runs_along(*line, self.reach);
+        if let Some(corners) = regions::quad(&border)
+            && met.iter().all(free)
+            && flatness(corners.map(|v| face.flatten(at(v)))) >= FAIR
+        {
+            return Some(vec![Piece::new(members[0], &corners.map(at), [true; 4])]);
+        }
+        let lines: Vec<Line> = around.lines.iter().copied().chain(met).collect();
         split(&face, members[0], &lines, [true; 4], self.fine)
     }
 

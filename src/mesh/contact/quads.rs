@@ -4,7 +4,7 @@ use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 /// A quad whose angles lie between this and 180° less this is always worth having.
-const FAIR: f64 = 30.0;
+pub(super) const FAIR: f64 = 30.0;
 
 /// A quad with angles beyond this one is never worth having; in between it must be twice as good as its worse half.
 const FLAT: f64 = 5.0;

@@ -95,6 +95,18 @@ pub(super) fn border<'a>(surfaces: impl Iterator<Item = &'a Surface>) -> Vec<[u3
     alone.map(|chunk| chunk[0].1).collect()
 }
 
+/// The corners that four sides go round, if they are a quad.
+pub(super) fn quad(border: &[[u32; 2]]) -> Option<[u32; 4]> {
+    let &[first, _, _, _] = border else {
+        return None;
+    };
+    let after = |corner: u32| border.iter().find(|side| side[0] == corner);
+    let [a, b] = first;
+    let [_, c] = *after(b)?;
+    let [_, d] = *after(c)?;
+    (after(d)?[1] == a).then_some([a, b, c, d])
+}
+
 /// Pairs of triangles that may be one surface, both ways, in order.
 fn neighbours(surfaces: &[Surface], positions: &[DVec3]) -> Vec<(u32, u32)> {
     let mut all: Vec<([u32; 2], u32)> = surfaces
