@@ -107,7 +107,7 @@ impl Mesh {
 
     fn add_root(&mut self, patch: u32, corners: &[Lattice]) {
         let centre = centre_of(corners);
-        let centre_position = self.patches[patch as usize].position(centre);
+        let inwards = self.inwards(patch, corners, centre);
         let mut element = Element {
             patch,
             corners: [NONE; 4],
@@ -117,9 +117,9 @@ impl Mesh {
             level: 0,
         };
         for (slot, corner) in element.corners.iter_mut().zip(corners) {
-            *slot = self.vertex(patch, *corner, centre_position);
+            *slot = self.vertex(patch, *corner, inwards);
         }
-        element.centre = self.vertex(patch, centre, centre_position);
+        element.centre = self.vertex(patch, centre, inwards);
         self.elements.push(element);
     }
 

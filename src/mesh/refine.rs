@@ -2,11 +2,26 @@
 
 use super::build::centre_of;
 use super::{Element, Lattice, Mesh, NONE, Patch, Vertex};
+use crate::geometry::SURFACE_OFFSET;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A vertex on the border of its patch is evaluated this fraction of the way to the centre of the element that made it.
+/// A vertex on the border of its patch is evaluated this fraction of the way to the centre of the element that made it …
 const INWARDS: f64 = 1e-3;
+
+/// … or more, so that it is this fraction of the scene's extent away from a wall that stands on the border: rays are not tested on
+/// the first hundred-thousandth of their way, and would pass through the wall …
+const CLEARANCE: f64 = 2.0 * SURFACE_OFFSET;
+
+/// … but never more than this fraction.
+const MOST_INWARDS: f64 = 0.15;
+
+/// The centre of an element, and how far towards it its vertices on the border of the patch are evaluated.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inwards {
+    centre: DVec3,
+    way: f64,
+}
 
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
@@ -64,7 +79,7 @@ impl Mesh {
         for corners in &mut children {
             let corners = &corners[..count];
             let centre = centre_of(corners);
-            let centre_position = self.patches[parent.patch as usize].position(centre);
+            let inwards = self.inwards(parent.patch, corners, centre);
             let mut child = Element {
                 corners: [NONE; 4],
                 level: parent.level + 1,
@@ -72,24 +87,24 @@ impl Mesh {
                 ..parent
             };
             for (slot, corner) in child.corners.iter_mut().zip(corners) {
-                *slot = self.vertex(parent.patch, *corner, centre_position);
+                *slot = self.vertex(parent.patch, *corner, inwards);
             }
-            child.centre = self.vertex(parent.patch, centre, centre_position);
+            child.centre = self.vertex(parent.patch, centre, inwards);
             self.elements.push(child);
         }
         self.elements[element as usize].children = first;
         first
     }
 
-    /// The vertex at a lattice point, made if there is none; `inside` is the centre of the element that asks.
-    pub(super) fn vertex(&mut self, patch: u32, lattice: Lattice, inside: DVec3) -> u32 {
+    /// The vertex at a lattice point, made if there is none, as far `inwards` as the element that asks wants it.
+    pub(super) fn vertex(&mut self, patch: u32, lattice: Lattice, inwards: Inwards) -> u32 {
         if let Some(vertex) = self.vertex_at(patch, lattice) {
             return vertex;
         }
         let owner = &mut self.patches[patch as usize];
         let position = owner.position(lattice);
         let point = if owner.on_border(lattice) {
-            position.lerp(inside, INWARDS)
+            position.lerp(inwards.centre, inwards.way)
         } else {
             position
         };
@@ -103,6 +118,22 @@ impl Mesh {
         let number = self.patches[patch as usize].vertices.len() - 1;
         self.index(patch, number);
         vertex
+    }
+
+    /// Where the vertices of an element with these corners are evaluated if they are on the border of its patch.
+    pub(super) fn inwards(&self, patch: u32, corners: &[Lattice], centre: Lattice) -> Inwards {
+        let at = |lattice: Lattice| self.patches[patch as usize].position(lattice);
+        let centre = at(centre);
+        let depth = |i: usize| {
+            let [a, b] = [i, (i + 1) % corners.len()].map(|i| at(corners[i]));
+            (b - a).normalize_or_zero().cross(centre - a).length()
+        };
+        let nearest = (0..corners.len()).map(depth).fold(f64::INFINITY, f64::min);
+        let clear = CLEARANCE * self.frame.extent() / nearest;
+        Inwards {
+            centre,
+            way: clear.clamp(INWARDS, MOST_INWARDS),
+        }
     }
 
     /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.

@@ -1,8 +1,8 @@
 //! A box that stands on a floor: neither light nor darkness leaks along the line where they touch.
 
 use super::common::closed_form::to_polygon;
-use super::common::shapes::{add_cuboid, add_grey, add_level, empty};
-use super::{draft, solved};
+use super::common::shapes::{add_cuboid, add_grey, add_level, add_quad, empty, rectangle};
+use super::{draft, engines, solved, solved_by};
 use glam::DVec3;
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
@@ -96,5 +96,31 @@ fn the_floor_under_the_box_is_dark() {
     let prober = Prober::new(&solution);
     for (x, z) in [(0.04, 0.16), (-0.1, 0.3), (0.2, 0.0)] {
         assert_eq!(irradiance(&prober, DVec3::new(x, 0.0, z)), 0.0);
+    }
+}
+
+/// Rays are not tested where they begin, and the vertices of short elements on the border of a ledge are as close to a wall there.
+#[test]
+fn no_light_passes_through_the_wall_behind_a_narrow_ledge() {
+    const WIDTH: f64 = 0.004;
+    let mut scene = empty();
+    let grey = add_grey(&mut scene, 0.0, 0.0);
+    let light = add_grey(&mut scene, 0.0, 1.0);
+    add_level(&mut scene, grey, [[-WIDTH, 0.0], [0.0, 0.04]], 0.0, true);
+    let foot = DVec3::new(0.0, -0.01, -3.0);
+    add_quad(
+        &mut scene,
+        grey,
+        rectangle(foot, DVec3::Y * 4.0, DVec3::Z * 6.0),
+    );
+    add_level(&mut scene, light, [[0.1, -1.0], [2.0, 1.0]], 2.0, false);
+    for engine in engines() {
+        let solution = solved_by(&scene, Preset::Standard.options(), engine, 0);
+        let prober = Prober::new(&solution);
+        let lit = (0..8).map(|i| {
+            let x = -WIDTH * (0.001 + f64::from(i) / 8.0);
+            irradiance(&prober, DVec3::new(x, 0.0, 0.013))
+        });
+        assert_eq!(lit.fold(0.0, f64::max), 0.0, "{engine:?}");
     }
 }
