@@ -1,106 +1,108 @@
 //! Step 3 of sampling a source: where some rays arrive and some do not.
 
-use super::hybrid::Receiver;
-use super::partition::Limits;
-use super::sampling::{Leaf, Sampler};
-use super::source::{CellIndex, Source, children};
+use super::neighbours::Neighbours;
+use super::partition::Pairing;
+use super::sampling::Leaf;
+use super::source::{CELLS, CellIndex, children};
 
-/// What is known of a cell while the leaves of one point are compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum State {
-    Outside,
-    Split,
-    Seen,
-    Occluded,
+/// What the leaves of one point are, cell by cell: what lies in it, itself included.
+#[derive(Debug)]
+pub(super) struct Marks([u8; CELLS]);
+
+const SEEN: u8 = 1;
+const OCCLUDED: u8 = 2;
+/// It is a leaf, so nothing else lies in it.
+const LEAF: u8 = 4;
+
+impl Default for Marks {
+    fn default() -> Self {
+        Self([0; CELLS])
+    }
 }
 
-impl Sampler<'_> {
-    /// Step 3: replaces leaves that disagree with a neighbour by their children, at the end; gives where those begin.
-    pub(super) fn split_disagreeing(
-        &self,
-        source: &Source,
-        receiver: Receiver,
-        limits: Limits,
-        leaves: &mut Vec<Leaf>,
-        state: &mut [State],
-    ) -> usize {
-        let seen = leaves.iter().filter(|leaf| leaf.seen).count();
-        let large = |leaf: &Leaf| {
-            f64::from(leaf.measure) > limits.difference && source.has_children(leaf.cell)
-        };
-        if seen == 0 || seen == leaves.len() || !leaves.iter().any(large) {
-            return leaves.len();
+impl Marks {
+    #[inline(always)]
+    fn set(&mut self, leaves: &[Leaf]) {
+        self.0.fill(0);
+        for leaf in leaves {
+            let mark = if leaf.seen { SEEN } else { OCCLUDED };
+            let mut cell = leaf.cell;
+            self.0[cell as usize] = mark | LEAF;
+            while cell > 0 {
+                cell = (cell - 1) / 4;
+                if self.0[cell as usize] & mark != 0 {
+                    break;
+                }
+                self.0[cell as usize] |= mark;
+            }
         }
-        for leaf in leaves.iter() {
-            state[leaf.cell as usize] = if leaf.seen {
-                State::Seen
-            } else {
-                State::Occluded
-            };
-            mark_ancestors(leaf.cell, state, State::Split);
-        }
-        let splits = |leaf: &Leaf| {
-            large(leaf)
-                && source
-                    .neighbours(leaf.cell)
+    }
+
+    /// Whether a leaf is beside any that is another than `own`.
+    #[inline(always)]
+    fn disagrees(&self, neighbours: Neighbours, own: u8) -> bool {
+        let other = own ^ (SEEN | OCCLUDED);
+        let beside = neighbours.map(|cell| self.0[usize::from(cell)]);
+        let any = beside[0] | beside[1] | beside[2] | beside[3];
+        any & other != 0
+            || (beside.contains(&0))
+                && neighbours
                     .iter()
-                    .flatten()
-                    .any(|n| disagrees(*n, state[leaf.cell as usize], state))
-        };
-        let split: Vec<Leaf> = leaves.iter().copied().filter(splits).collect();
-        for leaf in leaves.iter() {
-            state[leaf.cell as usize] = State::Outside;
-            mark_ancestors(leaf.cell, state, State::Outside);
+                    .any(|cell| self.covering(CellIndex::from(*cell)) & other != 0)
+    }
+
+    /// What the leaf is that covers a cell, if one does.
+    fn covering(&self, mut cell: CellIndex) -> u8 {
+        while cell > 0 && self.0[cell as usize] == 0 {
+            cell = (cell - 1) / 4;
         }
-        if split.is_empty() {
+        // A cell that is split, but not into this part, is not seen from in front here.
+        match self.0[cell as usize] {
+            leaf if leaf & LEAF != 0 => leaf,
+            _ => 0,
+        }
+    }
+}
+
+impl Pairing<'_> {
+    /// Step 3: replaces leaves that disagree with a neighbour by their children, at the end; gives where those begin.
+    #[inline(always)]
+    pub fn split_disagreeing(
+        &self,
+        leaves: &mut Vec<Leaf>,
+        marks: &mut Marks,
+        split: &mut Vec<CellIndex>,
+    ) -> usize {
+        let is_large = |leaf: &Leaf| {
+            f64::from(leaf.measure) > self.limits.difference && self.source.has_children(leaf.cell)
+        };
+        let seen = leaves.iter().filter(|leaf| leaf.seen).count();
+        if seen == 0 || seen == leaves.len() || !leaves.iter().any(is_large) {
             return leaves.len();
         }
-        let mut next = split.iter().map(|leaf| leaf.cell).peekable();
-        leaves.retain(|leaf| next.next_if_eq(&leaf.cell).is_none());
+        marks.set(leaves);
+        split.clear();
+        let mut kept = 0;
+        for i in 0..leaves.len() {
+            let leaf = leaves[i];
+            let own = if leaf.seen { SEEN } else { OCCLUDED };
+            if is_large(&leaf) && marks.disagrees(self.source.neighbours(leaf.cell), own) {
+                split.push(leaf.cell);
+            } else {
+                leaves[kept] = leaf;
+                kept += 1;
+            }
+        }
+        leaves.truncate(kept);
         let fresh = leaves.len();
-        for cell in split.iter().flat_map(|leaf| children(leaf.cell)) {
-            let sight = self
-                .formula
-                .sight(receiver, source.cell(cell), source.normal());
-            if sight.form_factor > 0.0 {
-                leaves.push(self.leaf(source, receiver, cell, &sight));
+        for parent in split {
+            let sights = self.sights(*parent);
+            for (i, cell) in children(*parent).enumerate() {
+                if sights.form_factor[i] > 0.0 {
+                    leaves.push(self.leaf(cell, &sights, i));
+                }
             }
         }
         fresh
-    }
-}
-
-fn mark_ancestors(mut cell: CellIndex, state: &mut [State], mark: State) {
-    while cell > 0 {
-        cell = (cell - 1) / 4;
-        if state[cell as usize] == mark {
-            return;
-        }
-        state[cell as usize] = mark;
-    }
-}
-
-/// Whether the leaf that covers `cell`, or any leaf inside it, is in another state than `own`.
-fn disagrees(cell: CellIndex, own: State, state: &[State]) -> bool {
-    match state[cell as usize] {
-        State::Split => children(cell).any(|child| {
-            state
-                .get(child as usize)
-                .is_some_and(|s| *s != State::Outside)
-                && disagrees(child, own, state)
-        }),
-        State::Outside => {
-            let mut above = cell;
-            while above > 0 {
-                above = (above - 1) / 4;
-                match state[above as usize] {
-                    State::Outside => {}
-                    State::Split => return false,
-                    other => return other != own,
-                }
-            }
-            false
-        }
-        other => other != own,
     }
 }

@@ -10,25 +10,31 @@ use std::f64::consts::PI;
 /// polynomial for s ≤ 1, interpolated at Chebyshev nodes; angles above 90° go through π - θ. Near θ = 0 the result is
 /// 1 + (1 - cos θ)/3 + …, so nothing cancels there as it does in `acos`.
 ///
-/// Four angles at once, so that one polynomial's latency serves all sides of a quad.
+/// Many angles at once, so that one polynomial's latency serves all sides of a polygon, or of several.
 #[inline(always)]
-pub fn angles_over_sines(cosines: [f64; 4], squared_sines: [f64; 4]) -> [f64; 4] {
-    let c = cosines.map(|cosine| cosine.abs().min(1.0));
-    let s = c.map(|c| (1.0 - c) / (1.0 + c));
-    let atan = atan_root_over_root(s);
-    let acute: [f64; 4] = std::array::from_fn(|i| (1.0 + s[i]) * atan[i]);
-    if cosines.iter().all(|cosine| *cosine >= 0.0) {
-        return acute;
+pub fn angles_over_sines<const N: usize>(cosines: &[f64; N], squared_sines: &[f64; N]) -> [f64; N] {
+    let mut s = [0.0; N];
+    for i in 0..N {
+        let c = cosines[i].abs().min(1.0);
+        s[i] = (1.0 - c) / (1.0 + c);
     }
-    std::array::from_fn(|i| {
-        let obtuse = PI / squared_sines[i].max(1e-300).sqrt() - acute[i];
-        if cosines[i] >= 0.0 { acute[i] } else { obtuse }
-    })
+    let mut angles = atan_root_over_root(&s);
+    for i in 0..N {
+        angles[i] *= 1.0 + s[i];
+    }
+    if cosines.iter().all(|cosine| *cosine >= 0.0) {
+        return angles;
+    }
+    for i in 0..N {
+        let obtuse = PI / squared_sines[i].max(1e-300).sqrt() - angles[i];
+        angles[i] = if cosines[i] >= 0.0 { angles[i] } else { obtuse };
+    }
+    angles
 }
 
 /// atan(√s)/√s on [0, 1].
 #[inline(always)]
-fn atan_root_over_root(s: [f64; 4]) -> [f64; 4] {
+fn atan_root_over_root<const N: usize>(s: &[f64; N]) -> [f64; N] {
     const COEFFICIENTS: [f64; 13] = [
         0.8704197513671037,
         -0.10187654224951163,
@@ -44,10 +50,11 @@ fn atan_root_over_root(s: [f64; 4]) -> [f64; 4] {
         -3.320596692183189e-07,
         1.0235203580963182e-07,
     ];
-    let x = s.map(|s| 2.0 * s - 1.0);
-    let mut sum = [COEFFICIENTS[12]; 4];
+    let mut sum = [COEFFICIENTS[12]; N];
     for coefficient in COEFFICIENTS[..12].iter().rev() {
-        sum = std::array::from_fn(|i| sum[i] * x[i] + coefficient);
+        for i in 0..N {
+            sum[i] = sum[i] * (2.0 * s[i] - 1.0) + coefficient;
+        }
     }
     sum
 }
@@ -57,7 +64,7 @@ mod tests {
     use super::*;
 
     fn angle_over_sine(cosine: f64, sine: f64) -> f64 {
-        angles_over_sines([cosine, 1.0, -0.5, 0.0], [sine * sine, 0.0, 0.75, 1.0])[0]
+        angles_over_sines(&[cosine, 1.0, -0.5, 0.0], &[sine * sine, 0.0, 0.75, 1.0])[0]
     }
 
     #[test]

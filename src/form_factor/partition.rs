@@ -1,8 +1,8 @@
 //! Step 1 of sampling a source: the cells for one point, found without rays.
 
-use super::disk::point_to_disk;
-use super::hybrid::{Receiver, Sight, above_horizon};
+use super::hybrid::{Formula, Receiver, above_horizon};
 use super::sampling::{Leaf, Sampler};
+use super::siblings::{Four, Sights};
 use super::source::{CellIndex, Source, children};
 use crate::geometry::polygon::vector_area;
 use crate::radiometry::Spectrum;
@@ -62,103 +62,117 @@ pub(super) struct Limits {
 /// A difference this much below the threshold is not looked for.
 const NEGLIGIBLE: f64 = 1.0 / 16.0;
 
+/// A cell that is split, with what the point sees of its parts if that is known already.
+pub(super) type Split = (CellIndex, Option<Sights>);
+
 /// What the four parts of a cell give together.
 struct Parts {
     contribution: Spectrum,
     /// How far that is from the cell's own estimate, as the thresholds measure it.
     difference: f64,
+    /// What the point sees of them, if it was looked at for this.
+    sights: Option<Sights>,
+}
+
+/// One source and one point, before any ray.
+#[derive(Clone, Copy)]
+pub(super) struct Pairing<'a> {
+    pub source: &'a Source,
+    pub receiver: Receiver,
+    pub formula: Formula,
+    pub limits: Limits,
+    /// Whether thresholds are form factors.
+    pub raw: bool,
 }
 
 impl Sampler<'_> {
-    /// The thresholds at one point: they follow what it has, or what the source would give it if that is more.
-    pub(super) fn limits(&self, source: &Source, receiver: Receiver) -> Limits {
+    /// A source and a point with the thresholds there: they follow what the point has, or what the source would give it if that is more.
+    #[inline(always)]
+    pub(super) fn pairing<'a>(&self, source: &'a Source, receiver: Receiver) -> Pairing<'a> {
         let SourceThresholds {
             difference,
             estimate,
             raw,
             scale,
         } = self.thresholds;
-        if raw {
-            return Limits {
-                difference,
-                estimate,
-            };
-        }
-        let from = |cell| {
-            let of = source.cell(cell);
-            let factor = point_to_disk(
-                receiver.normal,
-                of.centroid - receiver.point,
-                source.normal(),
-                of.area,
-            );
-            f64::from(of.radiosity.max_element()) * factor
+        let unit = if raw {
+            1.0
+        } else {
+            let siblings = source.parts(0);
+            let disks = siblings.disks(receiver, source.normal());
+            let given: f64 = (0..4).map(|i| siblings.strongest(i) * disks[i]).sum();
+            scale.at(given.max(f64::from(receiver.irradiance)))
         };
-        let unit = scale.at(children(0)
-            .map(from)
-            .sum::<f64>()
-            .max(f64::from(receiver.irradiance)));
-        Limits {
-            difference: difference * unit,
-            estimate: estimate * unit,
+        Pairing {
+            source,
+            receiver,
+            formula: self.formula,
+            limits: Limits {
+                difference: difference * unit,
+                estimate: estimate * unit,
+            },
+            raw,
         }
     }
+}
 
+impl Pairing<'_> {
     /// Step 1: the cells for one point, found without rays.
-    pub(super) fn partition(
-        &self,
-        source: &Source,
-        receiver: Receiver,
-        limits: Limits,
-        pending: &mut Vec<CellIndex>,
-        leaves: &mut Vec<Leaf>,
-    ) {
+    #[inline(always)]
+    pub fn partition(&self, pending: &mut Vec<Split>, leaves: &mut Vec<Leaf>) {
         pending.clear();
-        pending.extend((1..=4).rev());
-        while let Some(cell) = pending.pop() {
-            let sight = self
-                .formula
-                .sight(receiver, source.cell(cell), source.normal());
-            if sight.form_factor <= 0.0 {
-                continue;
-            }
-            let mut leaf = self.leaf(source, receiver, cell, &sight);
-            if source.has_children(cell) {
-                if f64::from(leaf.measure) > limits.estimate {
-                    pending.extend(children(cell).rev());
+        pending.push((0, None));
+        while let Some((parent, known)) = pending.pop() {
+            let sights = match known {
+                Some(sights) => sights,
+                None => self.sights(parent),
+            };
+            for (i, cell) in children(parent).enumerate() {
+                if sights.form_factor[i] <= 0.0 {
                     continue;
                 }
-                if let Some(parts) = self.parts(source, receiver, limits, &leaf, &sight) {
-                    if parts.difference > limits.difference {
-                        pending.extend(children(cell).rev());
+                let mut leaf = self.leaf(cell, &sights, i);
+                if self.source.has_children(cell) {
+                    if f64::from(leaf.measure) > self.limits.estimate {
+                        pending.push((cell, None));
                         continue;
                     }
-                    // The finer estimate is at hand, and a third of the difference is left of its second-order error.
-                    let change = parts.contribution - leaf.contribution;
-                    leaf.contribution =
-                        (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
+                    if let Some(parts) = self.finer(&leaf, &sights, i) {
+                        if parts.difference > self.limits.difference {
+                            pending.push((cell, parts.sights));
+                            continue;
+                        }
+                        // The finer estimate is at hand, and a third of the difference is left of its second-order error.
+                        let change = parts.contribution - leaf.contribution;
+                        leaf.contribution =
+                            (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
+                    }
                 }
+                leaves.push(leaf);
             }
-            leaves.push(leaf);
         }
     }
 
-    pub(super) fn leaf(
-        &self,
-        source: &Source,
-        receiver: Receiver,
-        cell: CellIndex,
-        sight: &Sight,
-    ) -> Leaf {
-        let of = source.cell(cell);
-        let contribution = of.radiosity * sight.form_factor as f32;
-        let measure = if self.thresholds.raw {
-            sight.form_factor as f32
+    /// What the point sees of the parts of a cell.
+    #[inline(always)]
+    pub fn sights(&self, parent: CellIndex) -> Sights {
+        let parts = self.source.parts(parent);
+        parts.sights(self.formula, self.receiver, self.source.normal())
+    }
+
+    /// A part of a cell that is not split.
+    #[inline(always)]
+    pub fn leaf(&self, cell: CellIndex, sights: &Sights, i: usize) -> Leaf {
+        let of = self.source.cell(cell);
+        let form_factor = sights.form_factor[i] as f32;
+        let contribution = of.radiosity * form_factor;
+        let measure = if self.raw {
+            form_factor
         } else {
             contribution.max_element()
         };
-        let area = if sight.cut {
-            vector_area(above_horizon(receiver, of.outline()).corners()).length()
+        let area = if sights.is_cut[i] {
+            vector_area(above_horizon(self.receiver, of.outline()).corners()).length()
         } else {
             of.area
         };
@@ -167,61 +181,56 @@ impl Sampler<'_> {
             contribution,
             measure,
             area: area as f32,
-            cut: sight.cut,
+            cut: sights.is_cut[i],
             seen: false,
+            place: [0.0; 2],
         }
     }
 
-    /// The estimate from the four parts of a cell; `None` where a bound shows that it is the cell's own.
-    fn parts(
-        &self,
-        source: &Source,
-        receiver: Receiver,
-        limits: Limits,
-        leaf: &Leaf,
-        sight: &Sight,
-    ) -> Option<Parts> {
-        let cell = source.cell(leaf.cell);
-        let variation = if self.thresholds.raw {
+    /// The estimate from the four parts of a leaf; `None` where a bound shows that it is the leaf's own.
+    #[inline(always)]
+    fn finer(&self, leaf: &Leaf, sights: &Sights, i: usize) -> Option<Parts> {
+        let (whole, uncertainty) = (sights.form_factor[i], sights.uncertainty[i]);
+        let variation = if self.raw {
             0.0
         } else {
-            f64::from(cell.variation) * sight.form_factor
+            f64::from(self.source.cell(leaf.cell).variation) * whole
         };
-        if f64::from(leaf.measure) * sight.uncertainty + variation <= NEGLIGIBLE * limits.difference
-        {
+        let bound = f64::from(leaf.measure) * uncertainty + variation;
+        if bound <= NEGLIGIBLE * self.limits.difference {
             return None;
         }
-        let (mut contribution, mut sum) = (Spectrum::ZERO, 0.0);
-        for child in children(leaf.cell) {
-            let part = source.cell(child);
+        let parts = self.source.parts(leaf.cell);
+        let (form_factors, sights) = if uncertainty > 0.0 {
+            let sights = self.sights(leaf.cell);
+            (sights.form_factor, Some(sights))
+        } else {
             // Eq. (2) has the whole right already; how the parts share it, their centres tell well enough.
-            let factor = if sight.uncertainty > 0.0 {
-                self.formula
-                    .sight(receiver, part, source.normal())
-                    .form_factor
-            } else {
-                point_to_disk(
-                    receiver.normal,
-                    part.centroid - receiver.point,
-                    source.normal(),
-                    part.area,
-                )
-            };
-            contribution += part.radiosity * factor as f32;
-            sum += factor;
-        }
-        if sight.uncertainty == 0.0 && sum > 0.0 {
-            contribution *= (sight.form_factor / sum) as f32;
-            sum = sight.form_factor;
-        }
-        let difference = if self.thresholds.raw {
-            (sum - sight.form_factor).abs()
+            let disks = parts.disks(self.receiver, self.source.normal());
+            (scaled_to(disks, whole), None)
+        };
+        let contribution = parts.irradiance(&form_factors);
+        let difference = if self.raw {
+            (form_factors.iter().sum::<f64>() - whole).abs()
         } else {
             f64::from((contribution - leaf.contribution).abs().max_element())
         };
         Some(Parts {
             contribution,
             difference,
+            sights,
         })
     }
+}
+
+/// Numbers multiplied so that they add up to `whole`, if they are not all 0.
+#[inline(always)]
+fn scaled_to(mut numbers: Four, whole: f64) -> Four {
+    let sum: f64 = numbers.iter().sum();
+    if sum > 0.0 {
+        for number in &mut numbers {
+            *number *= whole / sum;
+        }
+    }
+    numbers
 }

@@ -36,51 +36,82 @@ pub fn point_to_polygon_from(normal: DVec3, point: DVec3, corners: &[DVec3]) -> 
 /// Eq. (2) for four corners; a triangle repeats one, whose edge then has no length and gives nothing.
 #[inline(always)]
 pub(super) fn point_to_quad(normal: DVec3, corners: [DVec3; 4]) -> f64 {
-    let [x, y, z] = directions(corners);
-    let next = |list: &[f64; 4]| [list[1], list[2], list[3], list[0]];
-    edges(normal, [&x, &y, &z], [next(&x), next(&y), next(&z)])
+    let starts = directions(&by_axis(corners));
+    let ends = starts.map(|list| [list[1], list[2], list[3], list[0]]);
+    edges(normal, &starts, &ends).iter().sum()
+}
+
+/// [`point_to_quad`] for four polygons at once, axis by axis: the first corners of all, then the second ones, and so on.
+#[inline(always)]
+pub(super) fn point_to_quads(normal: DVec3, corners: &[[f64; 16]; 3]) -> [f64; 4] {
+    let starts = directions(corners);
+    let mut ends = starts;
+    for list in &mut ends {
+        list.rotate_left(4);
+    }
+    let terms = edges(normal, &starts, &ends);
+    std::array::from_fn(|i| terms[i] + terms[4 + i] + terms[8 + i] + terms[12 + i])
 }
 
 /// What the four edges between five corners add to Eq. (2).
 #[inline(always)]
 fn four_edges(normal: DVec3, corners: [DVec3; 4], last: DVec3) -> f64 {
-    let [x, y, z] = directions(corners);
+    let starts = directions(&by_axis(corners));
     let last = last / last.length().max(f64::MIN_POSITIVE.sqrt());
-    let next = |list: &[f64; 4], last: f64| [list[1], list[2], list[3], last];
-    let ends = [next(&x, last.x), next(&y, last.y), next(&z, last.z)];
-    edges(normal, [&x, &y, &z], ends)
-}
-
-/// Unit vectors by component.
-#[inline(always)]
-fn directions(corners: [DVec3; 4]) -> [[f64; 4]; 3] {
-    let x = corners.map(|r| r.x);
-    let y = corners.map(|r| r.y);
-    let z = corners.map(|r| r.z);
-    let square: [f64; 4] = std::array::from_fn(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-    let scale = square.map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt());
-    [x, y, z].map(|list| std::array::from_fn(|i| list[i] * scale[i]))
-}
-
-/// The terms of four edges between unit vectors, from the first to the second of each.
-#[inline(always)]
-fn edges(normal: DVec3, [x, y, z]: [&[f64; 4]; 3], [u, v, w]: [[f64; 4]; 3]) -> f64 {
-    let cosines = std::array::from_fn(|i| x[i] * u[i] + y[i] * v[i] + z[i] * w[i]);
-    let cross = |i: usize| {
-        [
-            y[i] * w[i] - z[i] * v[i],
-            z[i] * u[i] - x[i] * w[i],
-            x[i] * v[i] - y[i] * u[i],
-        ]
+    let end = |axis: usize| {
+        let [_, b, c, d]: [f64; 4] = starts[axis];
+        [b, c, d, last[axis]]
     };
-    let crosses: [[f64; 3]; 4] = std::array::from_fn(cross);
-    let heights = crosses.map(|[x, y, z]| normal.x * x + normal.y * y + normal.z * z);
-    let squared_sines = crosses.map(|[x, y, z]| x * x + y * y + z * z);
-    let angles = angles_over_sines(cosines, squared_sines);
-    let sum: f64 = std::array::from_fn::<f64, 4, _>(|i| heights[i] * angles[i])
+    edges(normal, &starts, &[end(0), end(1), end(2)])
         .iter()
-        .sum();
-    -sum / (2.0 * PI)
+        .sum()
+}
+
+#[inline(always)]
+fn by_axis(corners: [DVec3; 4]) -> [[f64; 4]; 3] {
+    [
+        corners.map(|c| c.x),
+        corners.map(|c| c.y),
+        corners.map(|c| c.z),
+    ]
+}
+
+/// Vectors divided by their lengths, axis by axis.
+#[inline(always)]
+fn directions<const N: usize>(vectors: &[[f64; N]; 3]) -> [[f64; N]; 3] {
+    let mut unit = *vectors;
+    let [x, y, z] = &mut unit;
+    for i in 0..N {
+        let square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+        let scale = 1.0 / square.max(f64::MIN_POSITIVE).sqrt();
+        x[i] *= scale;
+        y[i] *= scale;
+        z[i] *= scale;
+    }
+    unit
+}
+
+/// The terms of Eq. (2) of edges between unit vectors.
+#[inline(always)]
+fn edges<const N: usize>(
+    normal: DVec3,
+    [x, y, z]: &[[f64; N]; 3],
+    [u, v, w]: &[[f64; N]; 3],
+) -> [f64; N] {
+    let (mut cosines, mut squared_sines, mut heights) = ([0.0; N], [0.0; N], [0.0; N]);
+    for i in 0..N {
+        cosines[i] = x[i] * u[i] + y[i] * v[i] + z[i] * w[i];
+        let cross_x = y[i] * w[i] - z[i] * v[i];
+        let cross_y = z[i] * u[i] - x[i] * w[i];
+        let cross_z = x[i] * v[i] - y[i] * u[i];
+        squared_sines[i] = cross_x * cross_x + cross_y * cross_y + cross_z * cross_z;
+        heights[i] = normal.x * cross_x + normal.y * cross_y + normal.z * cross_z;
+    }
+    let mut terms = angles_over_sines(&cosines, &squared_sines);
+    for i in 0..N {
+        terms[i] *= heights[i] * (-0.5 / PI);
+    }
+    terms
 }
 
 /// Eq. (2) with its traps taken care of, for corners relative to the point: the polygon is clipped to the horizon of

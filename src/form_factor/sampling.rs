@@ -5,13 +5,15 @@
 //! 2. Send one ray to each cell, jittered inside it. All points of the block go level by level, so rays fill packets.
 //! 3. Where some rays arrive and some do not, split the cells that disagree with a neighbour (`disagreement.rs`) and go to 2.
 
-use super::disagreement::State;
+use super::disagreement::Marks;
 use super::hybrid::{Formula, Receiver, above_horizon, point_in_cut};
-use super::partition::{Limits, SourceThresholds};
-use super::source::{CellIndex, DEEPEST, Source};
+use super::partition::{Pairing, SourceThresholds, Split};
+use super::source::{CellIndex, Source};
 use crate::geometry::{jitter, lift};
 use crate::radiometry::Spectrum;
+use crate::simd::{Isa, Kernel};
 use crate::visibility::{Fans, MAX_FAN, Visibility};
+use glam::{DVec3, Vec3};
 
 /// What a point receives from one source.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -64,31 +66,70 @@ pub(super) struct Leaf {
     /// Whether the horizon cuts the cell.
     pub(super) cut: bool,
     pub(super) seen: bool,
+    /// Where in the cell its ray was aimed; see [`Source::point_at`].
+    pub(super) place: [f32; 2],
 }
 
 /// Memory of a thread, reused between blocks.
+#[derive(Default)]
 pub struct Scratch {
+    isa: Isa,
     leaves: Vec<Vec<Leaf>>,
-    limits: Vec<Limits>,
-    pending: Vec<CellIndex>,
     fresh: Vec<usize>,
-    state: Vec<State>,
+    pending: Vec<Split>,
+    split: Vec<CellIndex>,
+    marks: Marks,
     fans: Fans,
-    owners: Vec<(u32, u32)>,
     masks: Vec<u64>,
 }
 
-impl Default for Scratch {
-    fn default() -> Self {
-        Self {
-            leaves: Vec::new(),
-            limits: Vec::new(),
-            pending: Vec::new(),
-            fresh: Vec::new(),
-            state: vec![State::Outside; (1 << (2 * (DEEPEST + 1))) / 3],
-            fans: Fans::default(),
-            owners: Vec::new(),
-            masks: Vec::new(),
+/// Step 1 for a block of points.
+struct Partition<'a, 'b> {
+    sampler: &'a Sampler<'a>,
+    source: &'a Source,
+    receivers: &'a [(Receiver, u32)],
+    scratch: &'b mut Scratch,
+    pairings: &'b mut Vec<Pairing<'a>>,
+}
+
+impl Kernel for Partition<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Scratch {
+            leaves, pending, ..
+        } = self.scratch;
+        for ((receiver, _), leaves) in self.receivers.iter().zip(leaves) {
+            let pairing = self.sampler.pairing(self.source, *receiver);
+            leaves.clear();
+            pairing.partition(pending, leaves);
+            self.pairings.push(pairing);
+        }
+    }
+}
+
+/// Step 3 for a block of points.
+struct Splitting<'a, 'b> {
+    pairings: &'b [Pairing<'a>],
+    scratch: &'b mut Scratch,
+}
+
+impl Kernel for Splitting<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Scratch {
+            leaves,
+            fresh,
+            split,
+            marks,
+            ..
+        } = self.scratch;
+        let points = self.pairings.iter().zip(leaves).zip(fresh);
+        for ((pairing, leaves), fresh) in points {
+            *fresh = pairing.split_disagreeing(leaves, marks, split);
         }
     }
 }
@@ -102,24 +143,19 @@ impl Sampler<'_> {
         scratch: &mut Scratch,
         gathers: &mut Vec<Gather>,
     ) -> u64 {
-        scratch
-            .leaves
-            .resize_with(receivers.len().max(scratch.leaves.len()), Vec::new);
+        let isa = scratch.isa;
+        let most = receivers.len().max(scratch.leaves.len());
+        scratch.leaves.resize_with(most, Vec::new);
+        let mut pairings = Vec::with_capacity(receivers.len());
+        isa.run(Partition {
+            sampler: self,
+            source,
+            receivers,
+            scratch,
+            pairings: &mut pairings,
+        });
         scratch.fresh.clear();
-        scratch.limits.clear();
-        for (i, (receiver, _)) in receivers.iter().enumerate() {
-            scratch.leaves[i].clear();
-            let limits = self.limits(source, *receiver);
-            self.partition(
-                source,
-                *receiver,
-                limits,
-                &mut scratch.pending,
-                &mut scratch.leaves[i],
-            );
-            scratch.limits.push(limits);
-            scratch.fresh.push(0);
-        }
+        scratch.fresh.resize(receivers.len(), 0);
         let mut rays = 0;
         loop {
             let traced = self.trace(source, receivers, scratch);
@@ -127,26 +163,14 @@ impl Sampler<'_> {
             if traced == 0 {
                 break;
             }
-            for (i, (receiver, _)) in receivers.iter().enumerate() {
-                let Scratch {
-                    leaves,
-                    limits,
-                    fresh,
-                    state,
-                    ..
-                } = scratch;
-                fresh[i] =
-                    self.split_disagreeing(source, *receiver, limits[i], &mut leaves[i], state);
-            }
+            isa.run(Splitting {
+                pairings: &pairings,
+                scratch,
+            });
         }
         gathers.clear();
         let leaves = scratch.leaves[..receivers.len()].iter();
-        gathers.extend(
-            receivers
-                .iter()
-                .zip(leaves)
-                .map(|((_, key), leaves)| sum(source, *key, leaves)),
-        );
+        gathers.extend(leaves.map(|leaves| sum(source, leaves)));
         rays
     }
 
@@ -156,57 +180,61 @@ impl Sampler<'_> {
             leaves,
             fresh,
             fans,
-            owners,
             masks,
             ..
         } = scratch;
+        let offset = lift(DVec3::ZERO, source.normal(), self.extent).as_vec3();
         fans.clear();
-        owners.clear();
-        for (i, (receiver, key)) in receivers.iter().enumerate() {
+        for ((receiver, key), (leaves, fresh)) in
+            receivers.iter().zip(leaves.iter_mut().zip(&*fresh))
+        {
             let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
-            for (n, leaf) in leaves[i][fresh[i]..].iter().enumerate() {
-                if n % MAX_FAN == 0 {
-                    fans.begin(origin);
-                    owners.push((i as u32, (fresh[i] + n) as u32));
-                }
-                fans.push(self.target(source, *receiver, *key, leaf));
+            for fan in leaves[*fresh..].chunks_mut(MAX_FAN) {
+                fans.begin(origin);
+                fans.extend(fan.iter_mut().map(|leaf| {
+                    leaf.place = place_in(leaf.cell, *key);
+                    target(source, *receiver, leaf) + offset
+                }));
             }
         }
         self.visibility.occluded(fans, masks);
-        for (fan, (owner, first)) in owners.iter().enumerate() {
-            for k in 0..fans.range(fan).len() {
-                leaves[*owner as usize][*first as usize + k].seen = masks[fan] >> k & 1 == 0;
+        let mut masks = masks.iter();
+        for (leaves, fresh) in leaves.iter_mut().zip(&*fresh) {
+            for (fan, mask) in leaves[*fresh..].chunks_mut(MAX_FAN).zip(&mut masks) {
+                for (k, leaf) in fan.iter_mut().enumerate() {
+                    leaf.seen = mask >> k & 1 == 0;
+                }
             }
         }
         fans.segments() as u64
     }
-
-    /// Aims the ray of a leaf.
-    fn target(&self, source: &Source, receiver: Receiver, key: u32, leaf: &Leaf) -> glam::Vec3 {
-        let [s, t] = place_in(leaf, key);
-        let cell = source.cell(leaf.cell);
-        // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
-        let point = if leaf.cut {
-            receiver.point + point_in_cut(&above_horizon(receiver, cell.outline()), s, t)
-        } else {
-            cell.at(s, t)
-        };
-        lift(point, source.normal(), self.extent).as_vec3()
-    }
 }
 
-/// Where in its cell the ray of a leaf is aimed.
-fn place_in(leaf: &Leaf, key: u32) -> [f64; 2] {
-    jitter(key, leaf.cell).map(|j| 0.05 + 0.9 * j)
+/// Where in a cell the ray to it is aimed.
+#[inline(always)]
+fn place_in(cell: CellIndex, key: u32) -> [f32; 2] {
+    jitter(key, cell).map(|j| 0.05 + 0.9 * j as f32)
+}
+
+/// The point that the ray to a leaf is aimed at.
+#[inline(always)]
+fn target(source: &Source, receiver: Receiver, leaf: &Leaf) -> Vec3 {
+    let [s, t] = leaf.place;
+    if !leaf.cut {
+        return source.point_at(leaf.cell, s, t);
+    }
+    // A cell cut by the horizon is rare: clip it again rather than carry the cut along.
+    let cut = above_horizon(receiver, source.cell(leaf.cell).outline());
+    (receiver.point + point_in_cut(&cut, f64::from(s), f64::from(t))).as_vec3()
 }
 
 /// The contribution of a leaf with the radiosity where its ray is aimed instead of the cell's mean.
-fn aimed(source: &Source, key: u32, leaf: &Leaf) -> Spectrum {
+fn aimed(source: &Source, leaf: &Leaf) -> Spectrum {
     let cell = source.cell(leaf.cell);
     if leaf.cut || cell.variation == 0.0 {
         return leaf.contribution;
     }
-    let [s, t] = place_in(leaf, key);
+    let [s, t] = leaf.place;
     let mean = cell.radiosity.max(Spectrum::splat(f32::MIN_POSITIVE));
     leaf.contribution * (source.radiosity_at(leaf.cell, s, t) / mean)
 }
@@ -215,7 +243,7 @@ fn aimed(source: &Source, key: u32, leaf: &Leaf) -> Spectrum {
 ///
 /// Where all rays arrive, the cells' means are exact. Where some do not, what is hidden from the point tends to be what is hidden
 /// from the light, so the mean of a cell times its visibility would lose light; the radiosity where the ray was aimed does not.
-fn sum(source: &Source, key: u32, leaves: &[Leaf]) -> Gather {
+fn sum(source: &Source, leaves: &[Leaf]) -> Gather {
     let all = leaves.iter().all(|leaf| leaf.seen);
     let mut gather = Gather::default();
     let (mut seen, mut area) = (0.0, 0.0);
@@ -226,11 +254,76 @@ fn sum(source: &Source, key: u32, leaves: &[Leaf]) -> Gather {
             gather.irradiance += if all {
                 leaf.contribution
             } else {
-                aimed(source, key, leaf)
+                aimed(source, leaf)
             };
             seen += leaf.area;
         }
     }
     gather.visibility = (area > 0.0).then(|| seen / area);
     gather
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::form_factor::ToleranceScale;
+    use crate::visibility::{Obvhs, Triangles};
+
+    /// A source that is not constant, half hidden, over points that are near and far and see all or a part of it above their horizon.
+    #[test]
+    fn all_instruction_sets_give_the_same_bits() {
+        let corners = [DVec3::ZERO, DVec3::Y, DVec3::new(1.0, 1.0, 0.0), DVec3::X];
+        let finest: Vec<Spectrum> = (0..1024)
+            .map(|i| Spectrum::new(i as f32, 1.0, 9.0))
+            .collect();
+        let blocker = Triangles {
+            vertices: [[0.4, -9.0, -0.2], [9.0, 0.5, -0.2], [0.4, 9.0, -0.2]]
+                .map(Vec3::from)
+                .to_vec(),
+            indices: vec![[0, 1, 2]],
+        };
+        let sampler = Sampler {
+            visibility: &Obvhs::new(&blocker).expect("one triangle is enough"),
+            extent: 8.0,
+            formula: Formula::Hybrid(5.0),
+            thresholds: SourceThresholds {
+                difference: 1e-3,
+                estimate: 1e-2,
+                raw: false,
+                scale: ToleranceScale {
+                    reference: 10.0,
+                    local_share: 0.5,
+                },
+            },
+        };
+        let receivers: Vec<(Receiver, u32)> = (0..200)
+            .map(|i| {
+                let [[x, y], [z, a]] = [0, 1].map(|k| jitter(i, k));
+                let receiver = Receiver {
+                    point: DVec3::new(3.0 * x - 1.0, 3.0 * y - 1.0, -3.0 * z * z),
+                    normal: DVec3::new(a - 0.5, 0.3, 1.0 - a).normalize(),
+                    irradiance: 0.0,
+                };
+                (receiver, i)
+            })
+            .collect();
+        for corners in [&corners[..], &corners[..3]] {
+            let source = Source::new(corners, DVec3::NEG_Z, 5, &finest);
+            let with = |isa: Isa| {
+                let mut scratch = Scratch {
+                    isa,
+                    ..Scratch::default()
+                };
+                let mut gathers = Vec::new();
+                let rays = sampler.gather(&source, &receivers, &mut scratch, &mut gathers);
+                (rays, gathers)
+            };
+            let expected = with(Isa::Portable);
+            let partly = |g: &Gather| g.visibility.is_some_and(|v| v > 0.0 && v < 1.0);
+            assert!(expected.1.iter().filter(|g| partly(g)).count() > 10);
+            for isa in Isa::available() {
+                assert!(with(isa) == expected, "{isa:?}");
+            }
+        }
+    }
 }

@@ -1,10 +1,10 @@
 //! A shooting patch as a pyramid of cells, each split into four.
 
-use crate::geometry::polygon;
+use super::cell::{Cell, SourceShape};
+use super::neighbours::Neighbours;
+use super::siblings::Siblings;
 use crate::radiometry::Spectrum;
-use glam::DVec3;
-use std::collections::HashMap;
-use std::sync::LazyLock;
+use glam::{DVec3, Vec3, Vec3A};
 
 /// Cells are numbered level by level; cell `c` has the children `4c + 1 … 4c + 4`.
 pub(super) type CellIndex = u32;
@@ -12,142 +12,30 @@ pub(super) type CellIndex = u32;
 /// The deepest level a source can have: 1024 cells there, 1365 in all.
 pub const DEEPEST: u32 = 5;
 
-/// The two shapes that shoot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SourceShape {
-    /// Three corners; split at the midpoints into three corner triangles and the middle one.
-    Triangle,
-    /// Four corners; split at the midpoints and the mean of the corners.
-    Quad,
+/// Cells of a source that has all levels.
+pub(super) const CELLS: usize = level_start(DEEPEST + 1);
+
+/// A cell as the image of the unit square: `origin + s along_s + t along_t + s t twist`.
+#[derive(Debug, Clone)]
+struct Map {
+    origin: Vec3A,
+    along_s: Vec3A,
+    along_t: Vec3A,
+    twist: Vec3A,
 }
 
-/// A cell of the source.
-#[derive(Debug, Clone, Copy)]
-pub struct Cell {
-    corners: [DVec3; 4],
-    shape: SourceShape,
-    /// Centre of mass: where Eq. (1) is evaluated.
-    pub(super) centroid: DVec3,
-    pub(super) area: f64,
-    /// The longest distance between two corners.
-    pub(super) diameter: f64,
-    /// The longest distance from the centroid to a corner.
-    pub(super) radius: f64,
-    /// Mean unshot radiosity.
-    pub(super) radiosity: Spectrum,
-    /// Largest difference, in any channel, between a child's radiosity and the cell's.
-    pub(super) variation: f32,
-}
-
-impl Cell {
-    pub(super) fn new(corners: [DVec3; 4], shape: SourceShape) -> Self {
-        let count = shape.corners();
-        let used = &corners[..count];
-        let centroid = polygon::centroid(used);
-        let radius = used
-            .iter()
-            .map(|c| c.distance_squared(centroid))
-            .fold(0.0, f64::max)
-            .sqrt();
+impl Map {
+    fn new(cell: &Cell) -> Self {
+        let [a, b, c, d] = cell.corners();
+        let (far, twist) = match cell.shape() {
+            SourceShape::Quad => (d, a - b + c - d),
+            SourceShape::Triangle => (c, DVec3::ZERO),
+        };
         Self {
-            corners,
-            shape,
-            centroid,
-            area: polygon::vector_area(used).length(),
-            diameter: polygon::diameter(used),
-            radius,
-            radiosity: Spectrum::ZERO,
-            variation: 0.0,
-        }
-    }
-
-    /// All four stored corners; a triangle repeats its first.
-    pub(super) fn corners(&self) -> [DVec3; 4] {
-        self.corners
-    }
-
-    /// Three or four.
-    pub(super) fn corner_count(&self) -> usize {
-        self.shape.corners()
-    }
-
-    /// The three or four corners.
-    pub(super) fn outline(&self) -> &[DVec3] {
-        &self.corners[..self.corner_count()]
-    }
-
-    /// Its area.
-    pub fn area(&self) -> f64 {
-        self.area
-    }
-
-    /// The point at (s, t) of the unit square, mapped onto the cell evenly in area for triangles and parallelograms.
-    pub fn at(&self, s: f64, t: f64) -> DVec3 {
-        let [a, b, c, d] = self.corners;
-        match self.shape {
-            SourceShape::Quad => a.lerp(b, s).lerp(d.lerp(c, s), t),
-            SourceShape::Triangle => {
-                let (s, t) = if s + t > 1.0 {
-                    (1.0 - s, 1.0 - t)
-                } else {
-                    (s, t)
-                };
-                a + (b - a) * s + (c - a) * t
-            }
-        }
-    }
-
-    fn children(&self) -> [[DVec3; 4]; 4] {
-        self.shape.children(
-            self.corners,
-            |a, b| (a + b) * 0.5,
-            |[a, b, c, d]| (a + b + c + d) * 0.25,
-        )
-    }
-}
-
-impl SourceShape {
-    /// Three or four.
-    pub const fn corners(self) -> usize {
-        match self {
-            SourceShape::Triangle => 3,
-            SourceShape::Quad => 4,
-        }
-    }
-
-    /// The corners of the four parts, in the order in which the mesh numbers the children of an element.
-    fn children<P: Copy>(
-        self,
-        corners: [P; 4],
-        midpoint: impl Fn(P, P) -> P,
-        centre: impl Fn([P; 4]) -> P,
-    ) -> [[P; 4]; 4] {
-        let [a, b, c, d] = corners;
-        match self {
-            SourceShape::Quad => {
-                let (ab, bc, cd, da) = (
-                    midpoint(a, b),
-                    midpoint(b, c),
-                    midpoint(c, d),
-                    midpoint(d, a),
-                );
-                let m = centre(corners);
-                [
-                    [a, ab, m, da],
-                    [ab, b, bc, m],
-                    [m, bc, c, cd],
-                    [da, m, cd, d],
-                ]
-            }
-            SourceShape::Triangle => {
-                let (ab, bc, ca) = (midpoint(a, b), midpoint(b, c), midpoint(c, a));
-                [
-                    [a, ab, ca, a],
-                    [ab, b, bc, ab],
-                    [ca, bc, c, ca],
-                    [bc, ca, ab, bc],
-                ]
-            }
+            origin: a.as_vec3a(),
+            along_s: (b - a).as_vec3a(),
+            along_t: (far - a).as_vec3a(),
+            twist: twist.as_vec3a(),
         }
     }
 }
@@ -158,7 +46,11 @@ pub struct Source {
     shape: SourceShape,
     normal: DVec3,
     levels: u32,
+    neighbours: &'static [Neighbours],
     cells: Vec<Cell>,
+    /// The children of each cell that has some.
+    parts: Vec<Siblings>,
+    maps: Vec<Map>,
     /// Radiosity of the cells of the deepest level, close together in memory.
     finest: Vec<Spectrum>,
 }
@@ -206,10 +98,14 @@ impl Source {
             cells[parent].radiosity = mean;
             cells[parent].variation = variation;
         }
+        let families = cells[1..].chunks_exact(4);
         Self {
             shape,
             normal,
             levels,
+            neighbours: shape.neighbours(),
+            parts: families.map(Siblings::new).collect(),
+            maps: cells.iter().map(Map::new).collect(),
             cells,
             finest: finest.to_vec(),
         }
@@ -227,7 +123,7 @@ impl Source {
 
     /// The corners of the whole patch.
     pub fn corners(&self) -> &[DVec3] {
-        &self.cells[0].corners[..self.shape.corners()]
+        self.cells[0].outline()
     }
 
     /// The cells of the deepest level with their radiosity times area, for drawing points in proportion to it.
@@ -237,16 +133,28 @@ impl Source {
             .map(|c| (c, c.radiosity * c.area as f32))
     }
 
+    #[inline(always)]
     pub(super) fn cell(&self, index: CellIndex) -> &Cell {
         &self.cells[index as usize]
     }
 
+    /// The children of a cell together.
+    #[inline(always)]
+    pub(super) fn parts(&self, parent: CellIndex) -> &Siblings {
+        &self.parts[parent as usize]
+    }
+
+    /// The point at (s, t) of a cell, as [`Cell::at`] has it.
+    #[inline(always)]
+    pub(super) fn point_at(&self, index: CellIndex, s: f32, t: f32) -> Vec3 {
+        let (s, t) = self.shape.folded(s, t);
+        let map = &self.maps[index as usize];
+        (map.origin + map.along_s * s + (map.along_t + map.twist * s) * t).into()
+    }
+
     /// Radiosity at the point (s, t) of a cell, to the resolution of the deepest level.
-    pub(super) fn radiosity_at(&self, mut index: CellIndex, s: f64, t: f64) -> Spectrum {
-        let (mut s, mut t) = match self.shape {
-            SourceShape::Triangle if s + t > 1.0 => (1.0 - s, 1.0 - t),
-            _ => (s, t),
-        };
+    pub(super) fn radiosity_at(&self, mut index: CellIndex, s: f32, t: f32) -> Spectrum {
+        let (mut s, mut t) = self.shape.folded(s, t);
         while self.has_children(index) {
             let (child, s2, t2) = match self.shape {
                 SourceShape::Quad => {
@@ -254,8 +162,8 @@ impl Source {
                     let child = [[0, 3], [1, 2]][usize::from(right)][usize::from(upper)];
                     (
                         child,
-                        2.0 * s - f64::from(right),
-                        2.0 * t - f64::from(upper),
+                        2.0 * s - f32::from(right),
+                        2.0 * t - f32::from(upper),
                     )
                 }
                 SourceShape::Triangle if s > 0.5 => (1, 2.0 * s - 1.0, 2.0 * t),
@@ -269,17 +177,15 @@ impl Source {
     }
 
     /// Whether a cell can still be split.
+    #[inline(always)]
     pub(super) fn has_children(&self, index: CellIndex) -> bool {
         (index as usize) < level_start(self.levels)
     }
 
-    /// The cells of the same level across each side; `None` on the border.
-    pub(super) fn neighbours(&self, index: CellIndex) -> &'static [Option<CellIndex>; 4] {
-        let table = match self.shape {
-            SourceShape::Triangle => &TRIANGLE_NEIGHBOURS,
-            SourceShape::Quad => &QUAD_NEIGHBOURS,
-        };
-        &table[index as usize]
+    /// The cells of the same level across each side.
+    #[inline(always)]
+    pub(super) fn neighbours(&self, index: CellIndex) -> Neighbours {
+        self.neighbours[index as usize]
     }
 }
 
@@ -289,43 +195,8 @@ pub(super) fn children(cell: CellIndex) -> impl DoubleEndedIterator<Item = CellI
 }
 
 /// Number of the first cell of a level.
-const fn level_start(level: u32) -> usize {
+pub(super) const fn level_start(level: u32) -> usize {
     ((1usize << (2 * level)) - 1) / 3
-}
-
-static TRIANGLE_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> =
-    LazyLock::new(|| neighbour_table(SourceShape::Triangle));
-static QUAD_NEIGHBOURS: LazyLock<Vec<[Option<CellIndex>; 4]>> =
-    LazyLock::new(|| neighbour_table(SourceShape::Quad));
-
-/// Finds who shares a side with whom by subdividing a lattice of integers.
-fn neighbour_table(shape: SourceShape) -> Vec<[Option<CellIndex>; 4]> {
-    const N: i32 = 1 << (DEEPEST + 1);
-    let mut corners = vec![match shape {
-        SourceShape::Triangle => [[0, 0], [N, 0], [0, N], [0, 0]],
-        SourceShape::Quad => [[0, 0], [N, 0], [N, N], [0, N]],
-    }];
-    let half = |a: [i32; 2], b: [i32; 2]| [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-    for parent in 0..level_start(DEEPEST) {
-        corners.extend(shape.children(corners[parent], half, |[a, _, c, _]| half(a, c)));
-    }
-    let mut table = vec![[None; 4]; corners.len()];
-    for level in 0..=DEEPEST {
-        let mut open: HashMap<([i32; 2], [i32; 2]), (usize, usize)> = HashMap::new();
-        for cell in level_start(level)..level_start(level + 1) {
-            for side in 0..shape.corners() {
-                let (a, b) = (
-                    corners[cell][side],
-                    corners[cell][(side + 1) % shape.corners()],
-                );
-                if let Some((other, other_side)) = open.insert((a.min(b), a.max(b)), (cell, side)) {
-                    table[cell][side] = Some(other as CellIndex);
-                    table[other][other_side] = Some(cell as CellIndex);
-                }
-            }
-        }
-    }
-    table
 }
 
 #[cfg(test)]
@@ -353,24 +224,6 @@ mod tests {
                     .sum();
                 assert!((area - source.area()).abs() < 1e-14);
                 assert!((power / area - 127.5).abs() < 1e-3, "{power}");
-            }
-        }
-    }
-
-    #[test]
-    fn neighbours_share_a_side() {
-        for (shape, inner_sides) in [
-            (SourceShape::Quad, 2 * (2 * 32 * 31)),
-            (SourceShape::Triangle, 3 * 1024 - 3 * 32),
-        ] {
-            let table = neighbour_table(shape);
-            let last = &table[level_start(DEEPEST)..];
-            let linked: usize = last.iter().flatten().flatten().count();
-            assert_eq!(linked, inner_sides, "{shape:?}");
-            for (i, row) in table.iter().enumerate() {
-                for other in row.iter().flatten() {
-                    assert!(table[*other as usize].contains(&Some(i as CellIndex)));
-                }
             }
         }
     }

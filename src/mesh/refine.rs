@@ -26,10 +26,15 @@ pub(super) struct Inwards {
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
-        let sides = self.elements[element as usize].sides();
-        sides
-            .map(|(_, a, b)| self.position(a).distance(self.position(b)))
-            .fold(0.0, f64::max)
+        let of = &self.elements[element as usize];
+        let patch = &self.patches[of.patch as usize];
+        let count = of.corners().len();
+        let mut corners = [DVec3::ZERO; 4];
+        for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
+            *corner = patch.position(self.vertices[*vertex as usize].lattice);
+        }
+        let square = |i: usize| corners[i].distance_squared(corners[(i + 1) % count]);
+        (0..count).map(square).fold(0.0, f64::max).sqrt()
     }
 
     /// Whether the limits allow an element to be split.

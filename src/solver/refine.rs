@@ -289,9 +289,12 @@ pub(super) fn unit(
     element: u32,
 ) -> f64 {
     let h0 = options.limits.initial_size * mesh.frame.extent();
-    let growth = (h0 / mesh.longest_side(element))
-        .max(1.0)
-        .powf(options.size_exponent);
+    let shrunk = (h0 / mesh.longest_side(element)).max(1.0);
+    let growth = match options.size_exponent {
+        0.0 => 1.0,
+        1.0 => shrunk,
+        exponent => shrunk.powf(exponent),
+    };
     scale(mesh, light, beam, element) * growth
 }
 

@@ -75,6 +75,24 @@ impl Fans {
         self.z.push(target.z);
     }
 
+    /// Adds targets to the fan that was opened last.
+    pub fn extend(&mut self, targets: impl ExactSizeIterator<Item = Vec3>) {
+        let first = self.x.len();
+        let end = first + targets.len();
+        debug_assert!(end - (*self.starts.last().expect("a fan is open") as usize) <= MAX_FAN);
+        for list in [&mut self.x, &mut self.y, &mut self.z] {
+            list.resize(end, 0.0);
+        }
+        let (x, y, z) = (
+            &mut self.x[first..],
+            &mut self.y[first..],
+            &mut self.z[first..],
+        );
+        for (((x, y), z), target) in x.iter_mut().zip(y).zip(z).zip(targets) {
+            [*x, *y, *z] = target.to_array();
+        }
+    }
+
     /// Number of fans.
     pub fn len(&self) -> usize {
         self.origins.len()

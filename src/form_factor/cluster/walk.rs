@@ -4,7 +4,8 @@ use super::found::{Drawn, Found};
 use super::view::{LANES, Mask, Row, Rows, Views, lanes, mask};
 use super::{Clusters, Node, Sends, Tile};
 use crate::form_factor::disk::point_to_disk;
-use crate::form_factor::hybrid::{Receiver, Sight, above_horizon, point_in_cut};
+use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
+use crate::form_factor::polygon::{point_to_quad, point_to_visible_polygon};
 use crate::form_factor::{Formula, Sampler};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
@@ -29,6 +30,13 @@ const PART: f32 = 0.5;
 
 /// Rays along each side of a tile that gives a point much.
 const MOST_RAYS: u32 = 4;
+
+/// What a point sees of a tile, occlusion left aside.
+struct Sight {
+    form_factor: f64,
+    /// Whether the horizon cuts the tile.
+    cut: bool,
+}
 
 /// A few points on their way.
 pub(super) struct Walk<'a> {
@@ -287,15 +295,19 @@ impl Walk<'_> {
         if let Formula::Disk = self.sampler.formula {
             let to = tile.centre().as_dvec3() - receiver.point;
             let area = f64::from(tile.area());
-            let form_factor = point_to_disk(receiver.normal, to, normal, area);
             return Some(Sight {
-                form_factor,
-                uncertainty: 0.0,
+                form_factor: point_to_disk(receiver.normal, to, normal, area),
                 cut: false,
             });
         }
         let cut = heights.iter().any(|height| *height < 0.0);
-        Some(Sight::near(receiver, corners, tile.corner_count(), cut))
+        let relative = corners.map(|corner| corner - receiver.point);
+        let form_factor = if cut {
+            point_to_visible_polygon(receiver.normal, &relative[..tile.corner_count()]).0
+        } else {
+            point_to_quad(receiver.normal, relative).max(0.0)
+        };
+        Some(Sight { form_factor, cut })
     }
 
     fn take_tile(&mut self, lane: usize, number: u32, limits: &Limits) {
