@@ -3,6 +3,7 @@
 use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
+use std::ops::{Add, Sub};
 
 /// The two shapes that shoot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,16 +81,10 @@ impl Cell {
     /// The point at (s, t) of the unit square, mapped onto the cell evenly in area for triangles and parallelograms.
     pub fn at(&self, s: f64, t: f64) -> DVec3 {
         let [a, b, c, d] = self.corners;
+        let (s, t) = self.shape.folded(s, t);
         match self.shape {
             SourceShape::Quad => a.lerp(b, s).lerp(d.lerp(c, s), t),
-            SourceShape::Triangle => {
-                let (s, t) = if s + t > 1.0 {
-                    (1.0 - s, 1.0 - t)
-                } else {
-                    (s, t)
-                };
-                a + (b - a) * s + (c - a) * t
-            }
+            SourceShape::Triangle => a + (b - a) * s + (c - a) * t,
         }
     }
 
@@ -113,9 +108,13 @@ impl SourceShape {
 
     /// The place in a triangle that stands for one beyond its long side, in the unit square.
     #[inline(always)]
-    pub(super) fn folded(self, s: f32, t: f32) -> (f32, f32) {
-        if self == SourceShape::Triangle && s + t > 1.0 {
-            (1.0 - s, 1.0 - t)
+    pub(super) fn folded<T>(self, s: T, t: T) -> (T, T)
+    where
+        T: Copy + PartialOrd + From<u8> + Add<Output = T> + Sub<Output = T>,
+    {
+        let one = T::from(1);
+        if self == SourceShape::Triangle && s + t > one {
+            (one - s, one - t)
         } else {
             (s, t)
         }

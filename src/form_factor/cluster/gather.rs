@@ -58,7 +58,7 @@ impl Sampler<'_> {
             let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
             for targets in found.targets().chunks(MAX_FAN) {
                 fans.begin(origin);
-                targets.iter().for_each(|target| fans.push(*target));
+                fans.extend(targets.iter().copied());
             }
         }
         self.visibility.occluded(fans, masks);
