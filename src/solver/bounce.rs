@@ -64,12 +64,12 @@ impl Neighbourhoods {
         let side = side(mesh);
         let sheets = sheets(mesh, visibility, side / SLICES);
         let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
-        let mut keyed: Vec<((u64, u64, u32), u32)> = (0..mesh.vertices.len() as u32)
+        let mut keyed: Vec<((u64, [u32; 2]), u32)> = (0..mesh.vertices.len() as u32)
             .into_par_iter()
             .filter(|v| !mesh.buried[*v as usize])
             .map(|v| {
                 let (cube, slice) = key(mesh, v, side);
-                ((cube, slice, sheet(v)), v)
+                ((cube, [slice, sheet(v)]), v)
             })
             .collect();
         keyed.par_sort_unstable();
@@ -139,14 +139,14 @@ impl Neighbourhoods {
 
 /// The cube that a vertex is in with the way its patch faces, fronts apart from backs, and the slice of the cube across that way: the
 /// inside of a thin box has nothing of the light outside.
-fn key(mesh: &Mesh, vertex: u32, side: f64) -> (u64, u64) {
+fn key(mesh: &Mesh, vertex: u32, side: f64) -> (u64, u32) {
     let of = &mesh.vertices[vertex as usize];
     let patch = &mesh.patches[of.patch as usize];
     let face = facing(patch.normal);
     let place = of.point / side;
     let [x, y, z] = place.floor().as_i64vec3().to_array();
     let [x, y, z] = [x, y, z].map(|i| (i & 0xf_ffff) as u64);
-    let slice = (place[face / 2].rem_euclid(1.0) * SLICES) as u64;
+    let slice = (place[face / 2].rem_euclid(1.0) * SLICES) as u32;
     let turned = 2 * face as u64 + u64::from(patch.back);
     (turned << 60 | x << 40 | y << 20 | z, slice)
 }
