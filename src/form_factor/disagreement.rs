@@ -25,7 +25,7 @@ impl Marks {
     fn set(&mut self, leaves: &[Leaf]) {
         self.0.fill(0);
         for leaf in leaves {
-            let mark = if leaf.seen { SEEN } else { OCCLUDED };
+            let mark = own(leaf);
             let mut cell = leaf.cell;
             self.0[cell as usize] = mark | LEAF;
             while cell > 0 {
@@ -38,14 +38,14 @@ impl Marks {
         }
     }
 
-    /// Whether a leaf is beside any that is another than `own`.
+    /// Whether a leaf is beside any that is another.
     #[inline(always)]
-    fn disagrees(&self, neighbours: Neighbours, own: u8) -> bool {
-        let other = own ^ (SEEN | OCCLUDED);
+    fn disagrees(&self, leaf: &Leaf, neighbours: Neighbours) -> bool {
+        let other = own(leaf) ^ (SEEN | OCCLUDED);
         let beside = neighbours.map(|cell| self.0[usize::from(cell)]);
         let any = beside[0] | beside[1] | beside[2] | beside[3];
         any & other != 0
-            || (beside.contains(&0))
+            || beside.contains(&0)
                 && neighbours
                     .iter()
                     .any(|cell| self.covering(CellIndex::from(*cell)) & other != 0)
@@ -62,6 +62,12 @@ impl Marks {
             _ => 0,
         }
     }
+}
+
+/// What a leaf is.
+#[inline(always)]
+fn own(leaf: &Leaf) -> u8 {
+    if leaf.seen { SEEN } else { OCCLUDED }
 }
 
 impl Pairing<'_> {
@@ -82,18 +88,14 @@ impl Pairing<'_> {
         }
         marks.set(leaves);
         split.clear();
-        let mut kept = 0;
-        for i in 0..leaves.len() {
-            let leaf = leaves[i];
-            let own = if leaf.seen { SEEN } else { OCCLUDED };
-            if is_large(&leaf) && marks.disagrees(self.source.neighbours(leaf.cell), own) {
+        leaves.retain(|leaf| {
+            let neighbours = self.source.neighbours(leaf.cell);
+            let splits = is_large(leaf) && marks.disagrees(leaf, neighbours);
+            if splits {
                 split.push(leaf.cell);
-            } else {
-                leaves[kept] = leaf;
-                kept += 1;
             }
-        }
-        leaves.truncate(kept);
+            !splits
+        });
         let fresh = leaves.len();
         for parent in split {
             let sights = self.sights(*parent);

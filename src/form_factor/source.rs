@@ -227,4 +227,18 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn single_precision_aims_at_the_same_points() {
+        let [a, b, c, d] = square();
+        for corners in [&[a, b, c, d][..], &[a, b, c + DVec3::X, d], &[a, b, c]] {
+            let source = Source::new(corners, DVec3::Z, 2, &[Spectrum::ONE; 16]);
+            for index in 0..level_start(3) as CellIndex {
+                for (s, t) in [(0.1_f32, 0.2), (0.9, 0.3), (0.4, 0.9)] {
+                    let at = source.cell(index).at(f64::from(s), f64::from(t));
+                    assert!(source.point_at(index, s, t).distance(at.as_vec3()) < 1e-6);
+                }
+            }
+        }
+    }
 }
