@@ -1,6 +1,6 @@
 //! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{Clusters, Node, Sends, Tile, on_both};
+use super::{Cluster, Clusters, Node, Sends, Tile, nodes_over, on_both};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
@@ -24,13 +24,13 @@ impl Clusters {
             centres: tiles.par_iter().map(Tile::centre).collect(),
         };
         let groups: Vec<&mut [u32]> = order.chunk_by_mut(|a, b| side(a) == side(b)).collect();
-        let all = groups.iter().map(|group| count(group.len())).sum();
+        let all = groups.iter().map(|group| nodes_over(group.len())).sum();
         let mut nodes: Vec<Node> = repeat_n(Node::default(), all).collect();
         let (mut roots, mut trees) = (Vec::new(), Vec::new());
         let (mut number, mut first, mut rest) = (0, 0, nodes.as_mut_slice());
         for group in groups {
-            let (tree, others) = rest.split_at_mut(count(group.len()));
-            roots.push(number);
+            let (tree, others) = rest.split_at_mut(nodes_over(group.len()));
+            roots.push(Cluster::over(first, first + group.len() as u32, number));
             let place = Place {
                 number,
                 first,
@@ -62,11 +62,6 @@ impl Clusters {
     }
 }
 
-/// Nodes of a tree over so many tiles.
-const fn count(tiles: usize) -> usize {
-    2 * tiles - 1
-}
-
 struct Builder<'a> {
     tiles: &'a [Tile],
     centres: Vec<Vec3>,
@@ -76,24 +71,22 @@ struct Builder<'a> {
 #[derive(Clone, Copy)]
 struct Place {
     number: u32,
-    /// In the order of the leaves.
+    /// The place of its first tile.
     first: u32,
     depth: u32,
 }
 
 impl Builder<'_> {
-    /// Builds the node over `group`, the first of `nodes`, and all below it, which are the others.
+    /// Builds the node over `group`, the first of `nodes`, and all below it, which are the others; there are none over one tile.
     fn build(&self, group: &mut [u32], nodes: &mut [Node], at: Place) {
         let Some((node, below)) = nodes.split_first_mut() else {
             return;
         };
         *node = self.node(group, at.first);
-        if group.len() == 1 {
-            return;
-        }
         let middle = self.halve(group, at.depth);
+        node.middle = at.first + middle as u32;
         let (left, right) = group.split_at_mut(middle);
-        let (nodes_left, nodes_right) = below.split_at_mut(count(middle));
+        let (nodes_left, nodes_right) = below.split_at_mut(nodes_over(middle));
         let depth = at.depth + 1;
         let at_left = Place {
             number: at.number + 1,
@@ -102,12 +95,11 @@ impl Builder<'_> {
         };
         let at_right = Place {
             number: at_left.number + nodes_left.len() as u32,
-            first: at.first + middle as u32,
+            first: node.middle,
             depth,
         };
-        node.second = at_right.number;
         on_both(
-            nodes_left.len().min(nodes_right.len()),
+            node.smaller_half(),
             || self.build(left, nodes_left, at_left),
             || self.build(right, nodes_right, at_right),
         );
@@ -147,8 +139,8 @@ impl Builder<'_> {
             thickness: group.iter().map(aside).fold(0.0, f32::max),
             strength: 0.0,
             peak: 0.0,
-            second: 0,
             first,
+            middle: first,
             end: first + group.len() as u32,
         }
     }

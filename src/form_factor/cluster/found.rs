@@ -1,5 +1,6 @@
 //! What a point has found on its way through the tree.
 
+use super::Cluster;
 use crate::form_factor::Gather;
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
@@ -34,13 +35,13 @@ struct Pool {
 struct Loose {
     /// Σ of the bounds of all.
     bounds: f32,
-    drawn: Drawn,
+    drawn: Option<Drawn>,
 }
 
 /// A cluster that was drawn of several.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Drawn {
-    pub cluster: u32,
+    pub cluster: Cluster,
     /// No more than this can arrive of it.
     pub bound: f32,
     /// So many times what it gives stands for all.
@@ -111,12 +112,25 @@ impl Found {
     }
 
     /// Adds a cluster of which no more than `bound` can arrive; gives one to be drawn from when there are enough.
-    pub fn loosen(&mut self, cluster: u32, bound: f32, estimate: f32, key: u32) -> Option<Drawn> {
+    pub fn loosen(
+        &mut self,
+        cluster: Cluster,
+        bound: f32,
+        estimate: f32,
+        key: u32,
+    ) -> Option<Drawn> {
+        if bound <= 0.0 {
+            return None;
+        }
         let loose = &mut self.loose;
         loose.bounds += bound;
-        if loose.drawn.bound == 0.0 || jitter(key, cluster)[0] as f32 * loose.bounds < bound {
-            loose.drawn.cluster = cluster;
-            loose.drawn.bound = bound;
+        let drawn = jitter(key, cluster.key())[0] as f32 * loose.bounds < bound;
+        if drawn || loose.drawn.is_none() {
+            loose.drawn = Some(Drawn {
+                cluster,
+                bound,
+                stands_for: 1.0,
+            });
         }
         if loose.bounds >= LOOSE * estimate {
             self.empty_loose()
@@ -128,9 +142,8 @@ impl Found {
     /// One to be drawn from of what is left.
     pub fn empty_loose(&mut self) -> Option<Drawn> {
         let Loose { bounds, drawn } = std::mem::take(&mut self.loose);
-        let stands_for = bounds / drawn.bound;
-        (drawn.bound > 0.0).then_some(Drawn {
-            stands_for,
+        drawn.map(|drawn| Drawn {
+            stands_for: bounds / drawn.bound,
             ..drawn
         })
     }

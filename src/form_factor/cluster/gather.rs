@@ -1,9 +1,9 @@
 //! What a block of points receives from all clusters: for each point a cut through the tree, one ray a cluster.
 
-use super::Clusters;
 use super::found::Found;
 use super::view::{LANES, Mask};
 use super::walk::Walk;
+use super::{Cluster, Clusters};
 use crate::form_factor::hybrid::Receiver;
 use crate::form_factor::{Gather, Sampler};
 use crate::geometry::lift;
@@ -15,7 +15,7 @@ use crate::visibility::{Fans, MAX_FAN};
 pub struct ClusterScratch {
     /// What points walk the tree with.
     pub(super) isa: Isa,
-    pending: Vec<(u32, Mask)>,
+    pending: Vec<(Cluster, Mask)>,
     points: Vec<Found>,
     fans: Fans,
     masks: Vec<u64>,

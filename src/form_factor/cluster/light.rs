@@ -1,6 +1,6 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Clusters, Node, Sends, on_both};
+use super::{Aim, Cluster, Clusters, Node, Sends, nodes_over, on_both};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
@@ -32,39 +32,38 @@ impl Clusters {
         self.sums = sums;
         self.steps = self.sums.iter().step_by(STEP).copied().collect();
         let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
-        let roots = self.roots.iter().copied();
-        let ends = roots.clone().skip(1).chain([nodes.len() as u32]);
-        for (root, end) in roots.zip(ends) {
-            let tree = root as usize..end as usize;
-            self.send(root, &mut nodes[tree.clone()], &mut sends[tree]);
+        for root in &self.roots {
+            if let Cluster::Node(number) = *root {
+                let tree = number as usize..;
+                self.send(*root, &mut nodes[tree.clone()], &mut sends[tree]);
+            }
         }
         (self.nodes, self.sends) = (nodes, sends);
     }
 
-    /// Finds what a cluster sends, and all below it: `number` is the first of `nodes`, the others follow.
-    fn send(&self, number: u32, nodes: &mut [Node], sends: &mut [Sends]) {
-        let ([node, below @ ..], [sent, sent_below @ ..]) = (nodes, sends) else {
-            return;
+    /// Finds what a cluster sends, and all below it: these are the first of `nodes`. Gives what it sends, and its largest radiosity.
+    fn send(&self, cluster: Cluster, nodes: &mut [Node], sends: &mut [Sends]) -> (Sends, f32) {
+        let number = match cluster {
+            Cluster::Node(number) => number,
+            Cluster::Tile(place) => return (self.sent_by(place), self.tile(place).1.max_element()),
         };
-        if node.second == 0 {
-            let tile = node.first;
-            *sent = self.sent_by(tile);
-            node.peak = self.radiosity[tile as usize].max_element();
-        } else {
-            let (first, second) = (number + 1, node.second);
-            let middle = (second - first) as usize;
-            let (left, right) = below.split_at_mut(middle);
-            let (left_sent, right_sent) = sent_below.split_at_mut(middle);
-            on_both(
-                left.len().min(right.len()),
-                || self.send(first, left, left_sent),
-                || self.send(second, right, right_sent),
-            );
-            let draw = jitter(number, self.seed)[0] as f32;
-            *sent = joined(left_sent[0], right_sent[0], draw);
-            node.peak = left[0].peak.max(right[0].peak);
-        }
+        let ([node, below @ ..], [sent, sent_below @ ..]) = (nodes, sends) else {
+            unreachable!("a node is the first of those that are of it and below it");
+        };
+        let [left, right] = node.children(number);
+        let middle = nodes_over((node.middle - node.first) as usize);
+        let (nodes_left, nodes_right) = below.split_at_mut(middle);
+        let (sends_left, sends_right) = sent_below.split_at_mut(middle);
+        let ((first, peak), (second, other_peak)) = on_both(
+            node.smaller_half(),
+            || self.send(left, nodes_left, sends_left),
+            || self.send(right, nodes_right, sends_right),
+        );
+        let draw = jitter(number, self.seed)[0] as f32;
+        *sent = joined(first, second, draw);
+        node.peak = peak.max(other_peak);
         node.strength = sent.weight * sent.colour.max_element();
+        (*sent, node.peak)
     }
 
     /// Mean radiosity of the channels.
@@ -87,11 +86,16 @@ impl Clusters {
     }
 
     /// An aim in a cluster, drawn anew.
-    pub(super) fn draw(&self, number: u32, key: u32) -> Aim {
-        let [draw, s] = jitter(key, number ^ self.seed);
-        let node = &self.nodes[number as usize];
-        let [before, all] = [node.first, node.end].map(|tile| self.sums[tile as usize]);
-        let tile = self.tile_at(node, before + draw * (all - before));
+    pub(super) fn draw(&self, cluster: Cluster, key: u32) -> Aim {
+        let [draw, s] = jitter(key, cluster.key() ^ self.seed);
+        let tile = match cluster {
+            Cluster::Tile(place) => place,
+            Cluster::Node(number) => {
+                let node = &self.nodes[number as usize];
+                let [before, all] = [node.first, node.end].map(|tile| self.sums[tile as usize]);
+                self.tile_at(node, before + draw * (all - before))
+            }
+        };
         self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
     }
 
@@ -107,27 +111,29 @@ impl Clusters {
         place.clamp(first + 1, end) as u32 - 1
     }
 
-    fn sent_by(&self, number: u32) -> Sends {
-        let tile = &self.tiles[number as usize];
-        let weight = self.weight(number);
+    /// What a tile sends.
+    #[inline(always)]
+    pub(super) fn sent_by(&self, place: u32) -> Sends {
+        let (tile, radiosity) = self.tile(place);
+        let weight = self.weight(place);
         let centre = tile.centre();
         let corners = &tile.corners[..tile.corner_count()];
         // About its own centre a triangle or parallelogram has a twelfth of what its corners have.
         let inside = corners
             .iter()
             .map(|corner| products(*corner - centre, 1.0 / 12.0));
-        let mean = self.mean(number);
+        let mean = self.mean(place);
         Sends {
             flux: tile.normal * weight,
             weight,
             centre,
             spread: inside.fold([Vec3::ZERO; 2], plus),
             colour: if mean > 0.0 {
-                self.radiosity[number as usize] / mean
+                radiosity / mean
             } else {
                 Spectrum::ZERO
             },
-            aim: self.aim(number, jitter(number, !self.seed)),
+            aim: self.aim(place, jitter(place, !self.seed)),
         }
     }
 }

@@ -23,16 +23,19 @@ pub use gather::ClusterScratch;
 use crate::radiometry::Spectrum;
 use glam::{DVec3, Vec3};
 
-/// Subtrees with more nodes than this are worth a thread.
-const APART: usize = 1 << 11;
+/// Subtrees over more tiles than this are worth a thread.
+const APART: u32 = 1 << 10;
 
-/// Works on both subtrees of a node, side by side where the smaller has so many nodes that it is worth a thread.
-fn on_both(nodes: usize, left: impl FnOnce() + Send, right: impl FnOnce() + Send) {
-    if nodes > APART {
-        rayon::join(left, right);
+/// Works on both subtrees of a node, side by side where that over fewer `tiles` is worth a thread.
+fn on_both<L: Send, R: Send>(
+    tiles: u32,
+    left: impl FnOnce() -> L + Send,
+    right: impl FnOnce() -> R + Send,
+) -> (L, R) {
+    if tiles > APART {
+        rayon::join(left, right)
     } else {
-        left();
-        right();
+        (left(), right())
     }
 }
 
@@ -104,11 +107,12 @@ pub struct Clusters {
     places: Vec<u32>,
     /// Radiosity of each tile.
     radiosity: Vec<Spectrum>,
-    /// In depth-first order: the first child of an inner node follows it.
+    /// What is over more than one tile, in depth-first order. What is over one alone is that tile: nodes over these would be half of all, and
+    /// take more memory than the tiles.
     nodes: Vec<Node>,
     /// What each of them sends.
     sends: Vec<Sends>,
-    roots: Vec<u32>,
+    roots: Vec<Cluster>,
     /// Σ area × mean radiosity of the tiles before each, and of all.
     sums: Vec<f64>,
     /// Every few of them, to look at first.
@@ -119,7 +123,16 @@ pub struct Clusters {
     seed: u32,
 }
 
-/// A cluster: what it takes to decide whether it is to be opened, in one line of the cache.
+/// A part of the tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cluster {
+    /// A node, by its number.
+    Node(u32),
+    /// One tile, by its place in the order of the leaves.
+    Tile(u32),
+}
+
+/// What it takes to decide whether a cluster is to be opened, in one line of the cache.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct Node {
@@ -134,10 +147,9 @@ struct Node {
     /// Σ area × radiosity, and the largest radiosity, of the strongest channel.
     strength: f32,
     peak: f32,
-    /// The second child; the first follows this node. 0 for a leaf.
-    second: u32,
-    /// Its tiles are `tiles[first..end]`.
+    /// Its tiles are `tiles[first..end]`, those of its second child begin at `middle`.
     first: u32,
+    middle: u32,
     end: u32,
 }
 
@@ -176,6 +188,93 @@ impl Clusters {
     pub const fn bytes_for(tiles: usize) -> u64 {
         let node = size_of::<Node>() + size_of::<Sends>();
         let tile = size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>() + size_of::<f64>();
-        (tiles * (2 * node + tile)) as u64
+        (tiles * (node + tile)) as u64
     }
+
+    /// What it takes to decide about a cluster.
+    #[inline(always)]
+    fn node(&self, cluster: Cluster) -> Node {
+        match cluster {
+            Cluster::Node(number) => self.nodes[number as usize],
+            Cluster::Tile(place) => Node::of_tile(place, self.tile(place)),
+        }
+    }
+
+    /// What a cluster sends.
+    #[inline(always)]
+    fn sends(&self, cluster: Cluster) -> Sends {
+        match cluster {
+            Cluster::Node(number) => self.sends[number as usize],
+            Cluster::Tile(place) => self.sent_by(place),
+        }
+    }
+
+    /// The tile at a place, with its radiosity.
+    fn tile(&self, place: u32) -> (&Tile, Spectrum) {
+        (&self.tiles[place as usize], self.radiosity[place as usize])
+    }
+}
+
+impl Cluster {
+    /// That over the tiles `first..end`, where nodes from `number` on are for what is over more than one.
+    const fn over(first: u32, end: u32, number: u32) -> Self {
+        if end - first == 1 {
+            Self::Tile(first)
+        } else {
+            Self::Node(number)
+        }
+    }
+
+    /// What tells it from others when something is drawn for it.
+    const fn key(self) -> u32 {
+        match self {
+            Self::Node(number) => number,
+            Self::Tile(place) => !place,
+        }
+    }
+}
+
+impl Node {
+    /// Over one tile.
+    #[inline(always)]
+    fn of_tile(place: u32, (tile, radiosity): (&Tile, Spectrum)) -> Self {
+        let centre = tile.centre();
+        let from_centre = tile.corners.map(|corner| corner - centre);
+        let most = |of: [f32; 4]| of.into_iter().fold(0.0, f32::max);
+        let peak = radiosity.max_element();
+        Self {
+            centre,
+            radius: most(from_centre.map(Vec3::length_squared)).sqrt(),
+            cone: (1.0, 0.0),
+            axis: tile.normal,
+            thickness: most(from_centre.map(|corner| corner.dot(tile.normal).abs())),
+            strength: tile.area() * peak,
+            peak,
+            first: place,
+            middle: place,
+            end: place + 1,
+        }
+    }
+
+    /// Tiles of the child that has fewer.
+    fn smaller_half(&self) -> u32 {
+        (self.middle - self.first).min(self.end - self.middle)
+    }
+
+    /// Both children of the node with this number.
+    #[inline(always)]
+    const fn children(&self, number: u32) -> [Cluster; 2] {
+        let Self {
+            first, middle, end, ..
+        } = *self;
+        [
+            Cluster::over(first, middle, number + 1),
+            Cluster::over(middle, end, number + middle - first),
+        ]
+    }
+}
+
+/// Nodes of a tree over so many tiles.
+const fn nodes_over(tiles: usize) -> usize {
+    tiles - 1
 }

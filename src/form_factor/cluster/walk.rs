@@ -2,7 +2,7 @@
 
 use super::found::{Drawn, Found};
 use super::view::{LANES, Mask, Row, Rows, Views, lanes, mask};
-use super::{Clusters, Node, Sends, Tile};
+use super::{Cluster, Clusters, Node, Tile};
 use crate::form_factor::disk::point_to_disk;
 use crate::form_factor::hybrid::{Receiver, above_horizon, point_in_cut};
 use crate::form_factor::polygon::{point_to_quad, point_to_visible_polygon};
@@ -46,7 +46,7 @@ pub(super) struct Walk<'a> {
     pub receivers: &'a [(Receiver, u32)],
     pub settled: bool,
     /// Clusters that are yet to be looked at, and by whom.
-    pub pending: &'a mut Vec<(u32, Mask)>,
+    pub pending: &'a mut Vec<(Cluster, Mask)>,
     /// One for each receiver.
     pub points: &'a mut [Found],
 }
@@ -57,15 +57,6 @@ struct Limits {
     estimate: Row,
     /// More parts than this double them.
     most: [usize; LANES],
-}
-
-/// What is done with a cluster: by all that see any of it, those who take all of it at once, those who take a part, those who open it.
-struct Choice {
-    whole: Mask,
-    part: Mask,
-    opened: Mask,
-    /// What arrives of the whole, mean of the channels.
-    arriving: Row,
 }
 
 impl Kernel for Walk<'_> {
@@ -79,61 +70,19 @@ impl Kernel for Walk<'_> {
         let mut limits = self.limits(&rows, all);
         self.points.iter_mut().for_each(Found::clear);
         self.begin(all);
-        while let Some((number, asking)) = self.next() {
-            let node = &self.clusters.nodes[number as usize];
-            let sends = &self.clusters.sends[number as usize];
-            let Some(views) = self.views(node, &rows, asking) else {
+        while let Some((cluster, asking)) = self.next() {
+            let node = self.clusters.node(cluster);
+            let Some(views) = self.views(&node, &rows, asking) else {
                 continue;
             };
-            let choice = limits.choose(node, sends, &rows, &views);
-            for lane in lanes(choice.whole) {
-                let contribution = sends.colour * choice.arriving[lane];
-                self.pool(lane, contribution, sends.aim.target, &limits);
-            }
-            for lane in lanes(choice.part) {
-                self.take_part(lane, number, views.bound[lane], (&rows, &limits));
-            }
-            self.open(number, choice.opened, &mut limits);
+            let opened = self.take(cluster, &node, &views, (&rows, &limits));
+            self.open(cluster, &node, opened, &mut limits);
         }
         for lane in lanes(all) {
             if let Some(drawn) = self.points[lane].empty_loose() {
                 self.draw(lane, drawn, &rows);
             }
             self.points[lane].empty_pool();
-        }
-    }
-}
-
-impl Limits {
-    #[inline(always)]
-    fn choose(&self, node: &Node, sends: &Sends, rows: &Rows, views: &Views) -> Choice {
-        let (difference, estimate) = (&self.difference, &self.estimate);
-        let Views {
-            seen,
-            whole,
-            bound,
-            size,
-        } = views;
-        let slight = mask(|l| bound[l] <= difference[l]);
-        let small = mask(|l| size[l] < LARGE);
-        let part = mask(|l| bound[l] <= PART * estimate[l]) & seen & !whole;
-        let mut whole = (slight | small) & seen & whole;
-        let mut arriving = [0.0; LANES];
-        if whole != 0 {
-            arriving = sends.arriving(rows, node.radius);
-            let strongest = sends.colour.max_element();
-            let is_fine = |l: usize| {
-                let measure = arriving[l] * strongest;
-                let left = 0.5 * size[l] * size[l] * measure;
-                (measure <= estimate[l]) & (left <= difference[l])
-            };
-            whole &= slight | mask(is_fine);
-        }
-        Choice {
-            whole,
-            part,
-            opened: seen & !whole & !part,
-            arriving,
         }
     }
 }
@@ -149,13 +98,59 @@ impl Walk<'_> {
     /// The next cluster, and by whom it is asked. The walk would else wait for memory half of its time: what it will need of this one, and
     /// the one after it if this one is not opened, is asked for now.
     #[inline(always)]
-    fn next(&mut self) -> Option<(u32, Mask)> {
+    fn next(&mut self) -> Option<(Cluster, Mask)> {
         let next = self.pending.pop()?;
-        prefetch(&self.clusters.sends[next.0 as usize]);
-        if let Some((after, _)) = self.pending.last() {
-            prefetch(&self.clusters.nodes[*after as usize]);
+        if let Cluster::Node(number) = next.0 {
+            prefetch(&self.clusters.sends[number as usize]);
+        }
+        match self.pending.last() {
+            Some((Cluster::Node(after), _)) => prefetch(&self.clusters.nodes[*after as usize]),
+            Some((Cluster::Tile(after), _)) => prefetch(&self.clusters.tiles[*after as usize]),
+            None => {}
         }
         Some(next)
+    }
+
+    /// Takes a cluster by all that see any of it: those for whom it is fine take all of it at once, those of whom hardly anything can arrive
+    /// from it a part. Gives those who open it.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        cluster: Cluster,
+        node: &Node,
+        views: &Views,
+        (rows, limits): (&Rows, &Limits),
+    ) -> Mask {
+        let (difference, estimate) = (&limits.difference, &limits.estimate);
+        let Views {
+            seen,
+            whole,
+            bound,
+            size,
+        } = views;
+        let slight = mask(|l| bound[l] <= difference[l]);
+        let small = mask(|l| size[l] < LARGE);
+        let part = mask(|l| bound[l] <= PART * estimate[l]) & seen & !whole;
+        let mut whole = (slight | small) & seen & whole;
+        if whole != 0 {
+            let sends = self.clusters.sends(cluster);
+            let arriving = sends.arriving(rows, node.radius);
+            let strongest = sends.colour.max_element();
+            let is_fine = |l: usize| {
+                let measure = arriving[l] * strongest;
+                let left = 0.5 * size[l] * size[l] * measure;
+                (measure <= estimate[l]) & (left <= difference[l])
+            };
+            whole &= slight | mask(is_fine);
+            for lane in lanes(whole) {
+                let contribution = sends.colour * arriving[lane];
+                self.pool(lane, contribution, sends.aim.target, limits);
+            }
+        }
+        if part != 0 {
+            self.take_part(part, cluster, bound, (rows, limits));
+        }
+        seen & !whole & !part
     }
 
     /// What those who ask see of a cluster, if any sees any of it.
@@ -197,20 +192,18 @@ impl Walk<'_> {
     fn expected(&mut self, rows: &Rows, all: Mask) -> [Spectrum; LANES] {
         let mut sum = [Spectrum::ZERO; LANES];
         self.begin(all);
-        while let Some((number, asking)) = self.next() {
-            let node = &self.clusters.nodes[number as usize];
-            let sends = &self.clusters.sends[number as usize];
-            let Some(views) = self.views(node, rows, asking) else {
+        while let Some((cluster, asking)) = self.next() {
+            let node = self.clusters.node(cluster);
+            let Some(views) = self.views(&node, rows, asking) else {
                 continue;
             };
             let large = mask(|l| views.size[l] > GUESS);
-            let opened = if node.second != 0 {
-                large & views.seen
-            } else {
-                0
+            let opened = match cluster {
+                Cluster::Node(number) => self.descend(number, &node, large & views.seen),
+                Cluster::Tile(_) => 0,
             };
-            self.descend(number, opened);
             let taken = views.seen & !opened;
+            let sends = self.clusters.sends(cluster);
             if taken & views.whole != 0 {
                 let arriving = sends.arriving(rows, node.radius);
                 lanes(taken & views.whole).for_each(|l| sum[l] += sends.colour * arriving[l]);
@@ -222,23 +215,27 @@ impl Walk<'_> {
         sum
     }
 
+    /// Both children of a node are asked by those who have `opened` it, who are given.
     #[inline(always)]
-    fn descend(&mut self, number: u32, opened: Mask) {
+    fn descend(&mut self, number: u32, node: &Node, opened: Mask) -> Mask {
         if opened != 0 {
-            let second = self.clusters.nodes[number as usize].second;
-            self.pending
-                .extend([(second, opened), (number + 1, opened)]);
+            let [first, second] = node.children(number);
+            self.pending.extend([(second, opened), (first, opened)]);
         }
+        opened
     }
 
     #[inline(always)]
-    fn open(&mut self, number: u32, opened: Mask, limits: &mut Limits) {
-        let node = &self.clusters.nodes[number as usize];
-        if node.second != 0 {
-            return self.descend(number, opened);
-        }
+    fn open(&mut self, cluster: Cluster, node: &Node, opened: Mask, limits: &mut Limits) {
+        let place = match cluster {
+            Cluster::Node(number) => {
+                self.descend(number, node, opened);
+                return;
+            }
+            Cluster::Tile(place) => place,
+        };
         for lane in lanes(opened) {
-            self.take_tile(lane, node.first, limits);
+            self.take_tile(lane, place, limits);
             if self.points[lane].len() > limits.most[lane] {
                 limits.most[lane] += MOST / 2;
                 limits.difference[lane] *= 2.0;
@@ -256,18 +253,22 @@ impl Walk<'_> {
     #[inline(always)]
     fn take_part(
         &mut self,
-        lane: usize,
-        number: u32,
-        bound: f32,
+        by: Mask,
+        cluster: Cluster,
+        bound: &Row,
         (rows, limits): (&Rows, &Limits),
     ) {
         if self.settled {
-            let sends = &self.clusters.sends[number as usize];
-            let contribution = sends.drawn(&sends.aim, rows, lane, bound);
-            self.pool(lane, contribution, sends.aim.target, limits);
-        } else {
+            let sends = self.clusters.sends(cluster);
+            for lane in lanes(by) {
+                let contribution = sends.drawn(&sends.aim, rows, lane, bound[lane]);
+                self.pool(lane, contribution, sends.aim.target, limits);
+            }
+            return;
+        }
+        for lane in lanes(by) {
             let (estimate, key) = (limits.estimate[lane], self.receivers[lane].1);
-            let drawn = self.points[lane].loosen(number, bound, estimate, key);
+            let drawn = self.points[lane].loosen(cluster, bound[lane], estimate, key);
             drawn
                 .into_iter()
                 .for_each(|drawn| self.draw(lane, drawn, rows));
@@ -275,7 +276,7 @@ impl Walk<'_> {
     }
 
     fn draw(&mut self, lane: usize, drawn: Drawn, rows: &Rows) {
-        let sends = &self.clusters.sends[drawn.cluster as usize];
+        let sends = self.clusters.sends(drawn.cluster);
         let aim = self.clusters.draw(drawn.cluster, self.receivers[lane].1);
         let contribution = sends.drawn(&aim, rows, lane, drawn.bound) * drawn.stands_for;
         if contribution.max_element() > 0.0 {
@@ -312,11 +313,10 @@ impl Walk<'_> {
 
     fn take_tile(&mut self, lane: usize, number: u32, limits: &Limits) {
         let (receiver, key) = self.receivers[lane];
-        let radiosity = self.clusters.radiosity[number as usize];
+        let (tile, radiosity) = self.clusters.tile(number);
         if radiosity.max_element() <= 0.0 {
             return;
         }
-        let tile = &self.clusters.tiles[number as usize];
         let Some(sight) = self.sight(receiver, tile) else {
             return;
         };
