@@ -366,7 +366,7 @@ fn difference(of: &Solution, other: &Solution) -> f64 {
         let Some(there) = prober.probe(point, normal) else {
             continue;
         };
-        let weight = of.mesh.full_weights[element.centre as usize];
+        let weight = of.mesh.full_weight(element.centre);
         square += (here - there.irradiance.as_dvec3()).length_squared() / 3.0 * weight;
         sum += here.element_sum() / 3.0 * weight;
         area += weight;

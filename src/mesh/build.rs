@@ -36,7 +36,7 @@ impl Mesh {
             vertices: Vec::new(),
             buried: Vec::new(),
             weights: Vec::new(),
-            full_weights: Vec::new(),
+            buried_weights: FxHashMap::default(),
             touched: Vec::new(),
             continuation: Default::default(),
             weld: Default::default(),

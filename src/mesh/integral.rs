@@ -41,7 +41,7 @@ impl Mesh {
             .iter()
             .flat_map(|p| &self.patches[*p as usize].vertices);
         let vertices = vertices.map(|v| *v as usize);
-        let mut weights = std::mem::take(&mut self.full_weights);
+        let mut weights = std::mem::take(&mut self.weights);
         weights.resize(self.vertices.len(), 0.0);
         vertices.clone().for_each(|v| weights[v] = 0.0);
         for (leaf, areas) in leaves.iter().zip(areas) {
@@ -61,12 +61,14 @@ impl Mesh {
                 weights[*corner as usize] -= sag / corners.len() as f64;
             }
         }
-        self.weights.resize(self.vertices.len(), 0.0);
         for v in vertices {
             // No less than nothing, but for rounding.
             weights[v] = weights[v].max(0.0);
-            self.weights[v] = if self.buried[v] { 0.0 } else { weights[v] };
+            if self.buried[v] {
+                let weight = std::mem::take(&mut weights[v]);
+                self.buried_weights.insert(v as u32, weight);
+            }
         }
-        self.full_weights = weights;
+        self.weights = weights;
     }
 }

@@ -62,9 +62,9 @@ pub struct Mesh {
     /// exact to the second degree.
     #[serde(skip)]
     pub weights: Vec<f64>,
-    /// The same with the buried part.
+    /// The area that each buried vertex would stand for.
     #[serde(skip)]
-    pub full_weights: Vec<f64>,
+    buried_weights: FxHashMap<u32, f64>,
     #[serde(skip)]
     continuation: buried::Continuation,
     #[serde(skip)]
@@ -137,6 +137,14 @@ impl Mesh {
             let lattice = self.vertices[*vertex as usize].lattice;
             self.at.insert((patch, lattice), *vertex);
         }
+    }
+
+    /// The area that a vertex stands for, buried or not.
+    pub fn full_weight(&self, vertex: u32) -> f64 {
+        if self.buried[vertex as usize] {
+            return self.buried_weights.get(&vertex).copied().unwrap_or(0.0);
+        }
+        self.weights[vertex as usize]
     }
 
     /// Position of a vertex in the frame.

@@ -73,9 +73,7 @@ fn cells_on(
 /// Mean unshot radiosity of a patch, buried parts included.
 fn mean_of(mesh: &Mesh, light: &Light, (patch, sign): (usize, Sign)) -> Power {
     let of = &mesh.patches[patch];
-    let full = |v: &u32| {
-        light.unshot_radiosity(mesh, *v, sign).as_dvec3() * mesh.full_weights[*v as usize]
-    };
+    let full = |v: &u32| light.unshot_radiosity(mesh, *v, sign).as_dvec3() * mesh.full_weight(*v);
     of.vertices.iter().map(full).sum::<Power>() / of.area
 }
 
