@@ -77,7 +77,7 @@ impl Neighbourhoods {
             let [a, b] = [a, b].map(|v| above(mesh, v));
             see_one_another(visibility, a, b)
         };
-        let cubes: Vec<Vec<Vec<u32>>> = keyed
+        let cubes: Vec<Cube> = keyed
             .par_chunk_by(|a, b| a.0.0 == b.0.0)
             .map(|cube| {
                 let parts = cube.chunk_by(|a, b| a.0 == b.0);
@@ -85,27 +85,33 @@ impl Neighbourhoods {
                 let is_large = |of: &Vec<u32>| !is_little(mesh, area(mesh, of));
                 let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
                 large.extend(pooled(small, sees));
-                large
+                Cube::of(&large)
             })
             .collect();
-        Self::of(mesh, cubes.iter().flatten().map(Vec::as_slice))
-    }
-
-    /// Those of the given vertices.
-    fn of<'a>(mesh: &Mesh, groups: impl Iterator<Item = &'a [u32]>) -> Self {
-        let mut near = Self {
-            vertices: Vec::new(),
-            ends: Vec::new(),
-            of: vec![NONE; mesh.vertices.len()],
-        };
-        for vertices in groups {
-            for vertex in vertices {
-                near.of[*vertex as usize] = near.ends.len() as u32;
-            }
-            near.vertices.extend(vertices);
-            near.ends.push(near.vertices.len() as u32);
+        drop(keyed);
+        let mut near = Self::none(mesh);
+        for vertices in cubes.iter().flat_map(Cube::groups) {
+            near.push(vertices);
         }
         near
+    }
+
+    /// None yet.
+    fn none(mesh: &Mesh) -> Self {
+        Self {
+            vertices: Vec::with_capacity(mesh.vertices.len()),
+            ends: Vec::new(),
+            of: vec![NONE; mesh.vertices.len()],
+        }
+    }
+
+    /// Adds that of the given vertices.
+    fn push(&mut self, vertices: &[u32]) {
+        for vertex in vertices {
+            self.of[*vertex as usize] = self.ends.len() as u32;
+        }
+        self.vertices.extend(vertices);
+        self.ends.push(self.vertices.len() as u32);
     }
 
     /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
@@ -116,24 +122,52 @@ impl Neighbourhoods {
             f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
         };
         let all: f64 = self.vertices.iter().map(|v| reflected(*v)).sum();
-        let mut parts = Vec::new();
+        let mut near = Self::none(mesh);
         for vertices in self.iter() {
             let mut pending = vec![vertices.to_vec()];
             while let Some(part) = pending.pop() {
                 let power: f64 = part.iter().map(|v| reflected(*v)).sum();
                 match halves(mesh, &part).filter(|_| power > all / SHARES) {
                     Some(halves) => pending.extend(halves),
-                    None => parts.push(part),
+                    None => near.push(&part),
                 }
             }
         }
-        Self::of(mesh, parts.iter().map(Vec::as_slice))
+        near
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
-        let begins = [0].into_iter().chain(self.ends.iter().copied());
-        let ranges = begins.zip(&self.ends);
-        ranges.map(|(begin, end)| &self.vertices[begin as usize..*end as usize])
+        groups(&self.vertices, &self.ends)
+    }
+}
+
+/// What vertices each end at a place in `ends`.
+fn groups<'a>(vertices: &'a [u32], ends: &'a [u32]) -> impl Iterator<Item = &'a [u32]> + Clone {
+    let begins = [0].into_iter().chain(ends.iter().copied());
+    let ranges = begins.zip(ends);
+    ranges.map(|(begin, end)| &vertices[begin as usize..*end as usize])
+}
+
+/// The neighbourhoods of a cube, one after the other: a list for each would take more memory than the vertices in it.
+struct Cube {
+    vertices: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl Cube {
+    fn of(groups: &[Vec<u32>]) -> Self {
+        let ends = groups.iter().scan(0, |end, group| {
+            *end += group.len() as u32;
+            Some(*end)
+        });
+        Self {
+            vertices: groups.concat(),
+            ends: ends.collect(),
+        }
+    }
+
+    fn groups(&self) -> impl Iterator<Item = &[u32]> {
+        groups(&self.vertices, &self.ends)
     }
 }
 
