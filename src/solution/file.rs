@@ -10,7 +10,7 @@ use crate::scene::Camera;
 use crate::solver::Light;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -50,6 +50,26 @@ struct Stored<'a> {
     continuation: Cow<'a, Option<Continuation>>,
 }
 
+/// What the header says of the payload, found by writing it to nowhere: kept in memory, it would be the most that a solve of a large
+/// scene takes.
+#[derive(Default)]
+struct Tally {
+    length: u64,
+    checksum: crc32fast::Hasher,
+}
+
+impl Write for Tally {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.length += bytes.len() as u64;
+        self.checksum.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 impl Solution {
     /// Writes the solution file's bytes.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
@@ -61,12 +81,15 @@ impl Solution {
             light: Cow::Borrowed(&self.light),
             continuation: Cow::Borrowed(&self.continuation),
         };
-        let payload = postcard::to_stdvec(&stored).map_err(io::Error::other)?;
+        let mut tally = BufWriter::new(Tally::default());
+        postcard::to_io(&stored, &mut tally).map_err(io::Error::other)?;
+        let Tally { length, checksum } = tally.into_inner()?;
         out.write_all(MAGIC)?;
         out.write_all(&VERSION.to_le_bytes())?;
-        out.write_all(&(payload.len() as u64).to_le_bytes())?;
-        out.write_all(&crc32fast::hash(&payload).to_le_bytes())?;
-        out.write_all(&payload)
+        out.write_all(&length.to_le_bytes())?;
+        out.write_all(&checksum.finalize().to_le_bytes())?;
+        postcard::to_io(&stored, out).map_err(io::Error::other)?;
+        Ok(())
     }
 
     /// Reads a solution file.
