@@ -21,9 +21,8 @@ impl Solver<'_> {
     pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
         self.neighbourhoods = None;
         let prospect = self.prospect(bounce);
-        let whole = self.foreseen(prospect);
         let tiling = self.tiling();
-        let cells = tiling.unshot(&self.mesh, &whole, Sign::Positive);
+        let cells = tiling.unshot(&self.mesh, &self.foreseen(prospect), Sign::Positive);
         self.tiling = Some(tiling);
         self.set_out(Kind::Whole(prospect), cells, 1.0);
     }

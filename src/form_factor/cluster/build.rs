@@ -1,6 +1,6 @@
 //! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{Cluster, Clusters, Node, Sends, Tile, nodes_over, on_both};
+use super::{APART, Cluster, Clusters, Node, Sends, Tile};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
@@ -23,26 +23,14 @@ impl Clusters {
             tiles: &tiles,
             centres: tiles.par_iter().map(Tile::centre).collect(),
         };
-        let groups: Vec<&mut [u32]> = order.chunk_by_mut(|a, b| side(a) == side(b)).collect();
-        let all = groups.iter().map(|group| nodes_over(group.len())).sum();
-        let mut nodes: Vec<Node> = repeat_n(Node::default(), all).collect();
-        let (mut roots, mut trees) = (Vec::new(), Vec::new());
-        let (mut number, mut first, mut rest) = (0, 0, nodes.as_mut_slice());
-        for group in groups {
-            let (tree, others) = rest.split_at_mut(nodes_over(group.len()));
-            roots.push(Cluster::over(first, first + group.len() as u32, number));
-            let place = Place {
-                number,
-                first,
-                depth: 0,
-            };
-            number += tree.len() as u32;
-            first += group.len() as u32;
-            rest = others;
-            trees.push((group, tree, place));
+        let (mut nodes, mut roots, mut first) = (Vec::new(), Vec::new(), 0);
+        for group in order.chunk_by_mut(|a, b| side(a) == side(b)) {
+            let end = first + group.len() as u32;
+            roots.push(Cluster::over(first, end, nodes.len() as u32));
+            builder.build(group, Place { first, depth: 0 }, &mut nodes);
+            first = end;
         }
-        let build = |(group, tree, place)| builder.build(group, tree, place);
-        trees.into_par_iter().with_max_len(1).for_each(build);
+        nodes.shrink_to_fit();
         let mut places = vec![0; tiles.len()];
         for (place, tile) in (0..).zip(&order) {
             places[*tile as usize] = place;
@@ -70,39 +58,47 @@ struct Builder<'a> {
 /// Where a node is.
 #[derive(Clone, Copy)]
 struct Place {
-    number: u32,
     /// The place of its first tile.
     first: u32,
     depth: u32,
 }
 
 impl Builder<'_> {
-    /// Builds the node over `group`, the first of `nodes`, and all below it, which are the others; there are none over one tile.
-    fn build(&self, group: &mut [u32], nodes: &mut [Node], at: Place) {
-        let Some((node, below)) = nodes.split_first_mut() else {
+    /// Adds the node over `group`, and then all below it; there is none over one tile.
+    fn build(&self, group: &mut [u32], at: Place, nodes: &mut Vec<Node>) {
+        if group.len() == 1 {
             return;
-        };
-        *node = self.node(group, at.first);
+        }
+        let number = nodes.len();
+        let mut node = self.node(group, at.first);
+        nodes.push(node);
+        if node.is_over_few() {
+            return;
+        }
         let middle = self.halve(group, at.depth);
         node.middle = at.first + middle as u32;
         let (left, right) = group.split_at_mut(middle);
-        let (nodes_left, nodes_right) = below.split_at_mut(nodes_over(middle));
         let depth = at.depth + 1;
-        let at_left = Place {
-            number: at.number + 1,
-            depth,
-            ..at
-        };
+        let at_left = Place { depth, ..at };
         let at_right = Place {
-            number: at_left.number + nodes_left.len() as u32,
             first: node.middle,
             depth,
         };
-        on_both(
-            node.smaller_half(),
-            || self.build(left, nodes_left, at_left),
-            || self.build(right, nodes_right, at_right),
-        );
+        if node.smaller_half() > APART {
+            let (mut nodes_left, mut nodes_right) = (Vec::new(), Vec::new());
+            rayon::join(
+                || self.build(left, at_left, &mut nodes_left),
+                || self.build(right, at_right, &mut nodes_right),
+            );
+            nodes.append(&mut nodes_left);
+            node.second = (nodes.len() - number) as u32;
+            nodes.append(&mut nodes_right);
+        } else {
+            self.build(left, at_left, nodes);
+            node.second = (nodes.len() - number) as u32;
+            self.build(right, at_right, nodes);
+        }
+        nodes[number] = node;
     }
 
     fn node(&self, group: &[u32], first: u32) -> Node {
@@ -142,6 +138,7 @@ impl Builder<'_> {
             first,
             middle: first,
             end: first + group.len() as u32,
+            second: 0,
         }
     }
 

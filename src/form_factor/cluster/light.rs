@@ -1,6 +1,6 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Cluster, Clusters, Node, Sends, nodes_over, on_both};
+use super::{Aim, Cluster, Clusters, Node, Sends, on_both};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
@@ -50,18 +50,27 @@ impl Clusters {
         let ([node, below @ ..], [sent, sent_below @ ..]) = (nodes, sends) else {
             unreachable!("a node is the first of those that are of it and below it");
         };
-        let [left, right] = node.children(number);
-        let middle = nodes_over((node.middle - node.first) as usize);
-        let (nodes_left, nodes_right) = below.split_at_mut(middle);
-        let (sends_left, sends_right) = sent_below.split_at_mut(middle);
-        let ((first, peak), (second, other_peak)) = on_both(
-            node.smaller_half(),
-            || self.send(left, nodes_left, sends_left),
-            || self.send(right, nodes_right, sends_right),
-        );
-        let draw = jitter(number, self.seed)[0] as f32;
-        *sent = joined(first, second, draw);
-        node.peak = peak.max(other_peak);
+        let drawn = |tile: u32| jitter(number, self.seed ^ tile)[0] as f32;
+        (*sent, node.peak) = if node.is_over_few() {
+            let tiles = node.first + 1..node.end;
+            let begin = self.send(Cluster::Tile(node.first), &mut [], &mut []);
+            tiles.fold(begin, |(sent, peak), tile| {
+                let (other, other_peak) = self.send(Cluster::Tile(tile), &mut [], &mut []);
+                (joined(sent, other, drawn(tile)), peak.max(other_peak))
+            })
+        } else {
+            let [left, right] = node.children(number);
+            let middle = node.second as usize - 1;
+            let (nodes_left, nodes_right) = below.split_at_mut(middle);
+            let (sends_left, sends_right) = sent_below.split_at_mut(middle);
+            let ((sent, peak), (other, other_peak)) = on_both(
+                node.smaller_half(),
+                || self.send(left, nodes_left, sends_left),
+                || self.send(right, nodes_right, sends_right),
+            );
+            let draw = drawn(node.middle);
+            (joined(sent, other, draw), peak.max(other_peak))
+        };
         node.strength = sent.weight * sent.colour.max_element();
         (*sent, node.peak)
     }

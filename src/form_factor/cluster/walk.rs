@@ -215,10 +215,17 @@ impl Walk<'_> {
         sum
     }
 
-    /// Both children of a node are asked by those who have `opened` it, who are given.
+    /// The children of a node are asked by those who have `opened` it, who are given.
     #[inline(always)]
     fn descend(&mut self, number: u32, node: &Node, opened: Mask) -> Mask {
-        if opened != 0 {
+        if opened == 0 {
+            return 0;
+        }
+        if node.is_over_few() {
+            let tiles = (node.first..node.end).rev();
+            self.pending
+                .extend(tiles.map(|place| (Cluster::Tile(place), opened)));
+        } else {
             let [first, second] = node.children(number);
             self.pending.extend([(second, opened), (first, opened)]);
         }
