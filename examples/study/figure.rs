@@ -128,11 +128,11 @@ fn draw_panel(
 /// 1, 2 and 5 of each decade have a label.
 fn label(value: f64) -> String {
     let decade = 10f64.powf((value.log10() + 1e-9).floor());
-    let digit = (value / decade).round();
-    if [1.0, 2.0, 5.0].contains(&digit) {
+    // Some scales have lines between those of whole digits.
+    let is_here = |digit: &&f64| (value / decade - **digit).abs() < 1e-6;
+    let digit = [1.0, 2.0, 5.0].iter().find(is_here);
+    digit.map_or_else(String::new, |digit| {
         let decimals = (-decade.log10()).max(0.0) as usize;
         format!("{:.decimals$}", digit * decade)
-    } else {
-        String::new()
-    }
+    })
 }
