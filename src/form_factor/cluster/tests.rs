@@ -1,6 +1,6 @@
 //! Clusters against the sum over their tiles.
 
-use super::{ClusterScratch, Clusters, Tile};
+use super::{Cluster, ClusterScratch, Clusters, FEW, Tile};
 use crate::form_factor::{
     Formula, Gather, Receiver, Sampler, SourceThresholds, ToleranceScale, point_to_visible_polygon,
 };
@@ -8,7 +8,7 @@ use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use crate::simd::Isa;
 use crate::visibility::{BruteForce, Triangles};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// What thresholds are multiples of: of the order of the light at [`receivers`], 0.04 in the mean, as it is in an enclosure.
 const REFERENCE: f64 = 0.1;
@@ -119,6 +119,43 @@ fn exact(tiles: &[Tile], receiver: &Receiver) -> DVec3 {
         radiosity.as_dvec3() * factor
     };
     tiles.iter().zip(&radiosities).map(from).sum()
+}
+
+#[test]
+fn each_tile_is_below_one_chain_of_nodes_that_hold_it_and_send_what_it_sends() {
+    // As many balls as make trees that are built on several threads, and as few tiles as make one node, or none.
+    for tiles in [balls(40), balls(1), balls(1)[..3].to_vec()] {
+        let mut clusters = Clusters::new(tiles.clone(), 5.0);
+        clusters.radiate(radiosities(&tiles), 1);
+        let (mut pending, mut found) = (clusters.roots.clone(), Vec::new());
+        pending.reverse();
+        while let Some(cluster) = pending.pop() {
+            let number = match cluster {
+                Cluster::Node(number) => number,
+                Cluster::Tile(place) => {
+                    found.push(place);
+                    continue;
+                }
+            };
+            let (node, sends) = (clusters.node(cluster), clusters.sends(cluster));
+            let of = node.first..node.end;
+            let slack = 1e-5 + node.radius;
+            for tile in of.clone().map(|place| clusters.tile(place).0) {
+                let is_within = |corner: &Vec3| corner.distance(node.centre) <= slack;
+                assert!(tile.corners.iter().all(is_within), "{cluster:?}");
+            }
+            let sent = of.clone().map(|place| clusters.sent_by(place).weight);
+            let sent: f32 = sent.sum();
+            assert!((sends.weight - sent).abs() <= 1e-4 * sent, "{cluster:?}");
+            if node.is_over_few() {
+                assert!((2..=FEW as usize).contains(&of.len()));
+                pending.extend(of.rev().map(Cluster::Tile));
+            } else {
+                pending.extend(node.children(number).into_iter().rev());
+            }
+        }
+        assert!(found.into_iter().eq(0..tiles.len() as u32));
+    }
 }
 
 #[test]
