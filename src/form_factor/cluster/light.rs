@@ -45,17 +45,16 @@ impl Clusters {
     fn send(&self, cluster: Cluster, nodes: &mut [Node], sends: &mut [Sends]) -> (Sends, f32) {
         let number = match cluster {
             Cluster::Node(number) => number,
-            Cluster::Tile(place) => return (self.sent_by(place), self.tile(place).1.max_element()),
+            Cluster::Tile(place) => return self.with_peak(place),
         };
         let ([node, below @ ..], [sent, sent_below @ ..]) = (nodes, sends) else {
             unreachable!("a node is the first of those that are of it and below it");
         };
         let drawn = |tile: u32| jitter(number, self.seed ^ tile)[0] as f32;
         (*sent, node.peak) = if node.is_over_few() {
-            let tiles = node.first + 1..node.end;
-            let begin = self.send(Cluster::Tile(node.first), &mut [], &mut []);
-            tiles.fold(begin, |(sent, peak), tile| {
-                let (other, other_peak) = self.send(Cluster::Tile(tile), &mut [], &mut []);
+            let begin = self.with_peak(node.first);
+            (node.first + 1..node.end).fold(begin, |(sent, peak), tile| {
+                let (other, other_peak) = self.with_peak(tile);
                 (joined(sent, other, drawn(tile)), peak.max(other_peak))
             })
         } else {
@@ -73,6 +72,11 @@ impl Clusters {
         };
         node.strength = sent.weight * sent.colour.max_element();
         (*sent, node.peak)
+    }
+
+    /// What a tile sends, and its largest radiosity.
+    fn with_peak(&self, place: u32) -> (Sends, f32) {
+        (self.sent_by(place), self.tile(place).1.max_element())
     }
 
     /// Mean radiosity of the channels.
