@@ -70,6 +70,26 @@ impl Write for Tally {
     }
 }
 
+/// A writer that keeps the reason when it fails: the encoder only says that it could not go on.
+struct Candid<'a, W> {
+    out: &'a mut W,
+    failure: Option<io::Error>,
+}
+
+impl<W: Write> Write for Candid<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes).map_err(|reason| {
+            let kind = reason.kind();
+            self.failure = Some(reason);
+            kind.into()
+        })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 impl Solution {
     /// Writes the solution file's bytes.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
@@ -88,8 +108,9 @@ impl Solution {
         out.write_all(&VERSION.to_le_bytes())?;
         out.write_all(&length.to_le_bytes())?;
         out.write_all(&checksum.finalize().to_le_bytes())?;
-        postcard::to_io(&stored, out).map_err(io::Error::other)?;
-        Ok(())
+        let mut out = Candid { out, failure: None };
+        let encoded = postcard::to_io(&stored, &mut out).map(|_| ());
+        encoded.map_err(|e| out.failure.unwrap_or_else(|| io::Error::other(e)))
     }
 
     /// Reads a solution file.

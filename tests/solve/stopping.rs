@@ -1,10 +1,11 @@
 //! Why a solve ends, and that what it leaves is a solution in every case.
 
 use super::common::shapes::{add_grey, add_level, empty};
-use super::{bundled, draft, solved};
+use super::{bundled, draft, file, solved};
 use radiosity::solution::Solution;
 use radiosity::solver::{Control, Observer, Options, Progress, StopReason};
 use radiosity::{Settings, solve};
+use std::io::{self, Write};
 use std::time::Duration;
 
 /// Everything that a solution promises, whatever the reason for its end.
@@ -181,4 +182,41 @@ fn progress_goes_forward() {
         (last.shots, last.rays),
         (solution.report.shots, solution.report.rays)
     );
+}
+
+/// A disk with so many bytes left.
+struct Disk(usize);
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0 == 0 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let taken = bytes.len().min(self.0);
+        self.0 -= taken;
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_disk_that_fills_up_is_the_reason_wherever_it_does() {
+    let solution = solved(&bundled("emission"), draft());
+    let length = file(&solution).len();
+    for room in [0, 10, 24, 25, length / 2, length - 1] {
+        let error = solution
+            .write(&mut Disk(room))
+            .expect_err("there is no room");
+        assert_eq!(
+            error.kind(),
+            io::ErrorKind::StorageFull,
+            "after {room} bytes: {error}"
+        );
+    }
+    solution
+        .write(&mut Disk(length))
+        .expect("there is room for all of it");
 }
