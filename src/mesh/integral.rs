@@ -41,7 +41,7 @@ impl Mesh {
             .iter()
             .flat_map(|p| &self.patches[*p as usize].vertices);
         let vertices = vertices.map(|v| *v as usize);
-        let mut weights = std::mem::take(&mut self.weights);
+        let weights = &mut self.weights;
         weights.resize(self.vertices.len(), 0.0);
         vertices.clone().for_each(|v| weights[v] = 0.0);
         for (leaf, areas) in leaves.iter().zip(areas) {
@@ -69,6 +69,5 @@ impl Mesh {
                 self.buried_weights.insert(v as u32, weight);
             }
         }
-        self.weights = weights;
     }
 }

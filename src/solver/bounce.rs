@@ -43,9 +43,7 @@ pub(super) const MOST_RATIO: f64 = 0.95;
 /// The vertices that light falls on, by neighbourhood.
 #[derive(Debug, Clone)]
 pub(super) struct Neighbourhoods {
-    vertices: Vec<u32>,
-    /// Where in `vertices` each ends.
-    ends: Vec<u32>,
+    lists: Lists,
     /// In which each vertex is; none that is buried is in any.
     of: Vec<u32>,
 }
@@ -77,7 +75,7 @@ impl Neighbourhoods {
             let [a, b] = [a, b].map(|v| above(mesh, v));
             see_one_another(visibility, a, b)
         };
-        let cubes: Vec<Cube> = keyed
+        let cubes: Vec<Lists> = keyed
             .par_chunk_by(|a, b| a.0.0 == b.0.0)
             .map(|cube| {
                 let parts = cube.chunk_by(|a, b| a.0 == b.0);
@@ -85,12 +83,12 @@ impl Neighbourhoods {
                 let is_large = |of: &Vec<u32>| !is_little(mesh, area(mesh, of));
                 let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
                 large.extend(pooled(small, sees));
-                Cube::of(&large)
+                Lists::of(&large)
             })
             .collect();
         drop(keyed);
         let mut near = Self::none(mesh);
-        for vertices in cubes.iter().flat_map(Cube::groups) {
+        for vertices in cubes.iter().flat_map(Lists::iter) {
             near.push(vertices);
         }
         near
@@ -99,8 +97,7 @@ impl Neighbourhoods {
     /// None yet.
     fn none(mesh: &Mesh) -> Self {
         Self {
-            vertices: Vec::with_capacity(mesh.vertices.len()),
-            ends: Vec::new(),
+            lists: Lists::default(),
             of: vec![NONE; mesh.vertices.len()],
         }
     }
@@ -108,10 +105,9 @@ impl Neighbourhoods {
     /// Adds that of the given vertices.
     fn push(&mut self, vertices: &[u32]) {
         for vertex in vertices {
-            self.of[*vertex as usize] = self.ends.len() as u32;
+            self.of[*vertex as usize] = self.lists.ends.len() as u32;
         }
-        self.vertices.extend(vertices);
-        self.ends.push(self.vertices.len() as u32);
+        self.lists.push(vertices);
     }
 
     /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
@@ -121,7 +117,7 @@ impl Neighbourhoods {
                 mesh.patches[mesh.vertices[vertex as usize].patch as usize].reflectance;
             f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
         };
-        let all: f64 = self.vertices.iter().map(|v| reflected(*v)).sum();
+        let all: f64 = self.lists.vertices.iter().map(|v| reflected(*v)).sum();
         let mut near = Self::none(mesh);
         for vertices in self.iter() {
             let mut pending = vec![vertices.to_vec()];
@@ -137,37 +133,34 @@ impl Neighbourhoods {
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
-        groups(&self.vertices, &self.ends)
+        self.lists.iter()
     }
 }
 
-/// What vertices each end at a place in `ends`.
-fn groups<'a>(vertices: &'a [u32], ends: &'a [u32]) -> impl Iterator<Item = &'a [u32]> + Clone {
-    let begins = [0].into_iter().chain(ends.iter().copied());
-    let ranges = begins.zip(ends);
-    ranges.map(|(begin, end)| &vertices[begin as usize..*end as usize])
-}
-
-/// The neighbourhoods of a cube, one after the other: a list for each would take more memory than the vertices in it.
-struct Cube {
+/// Lists of vertices, one after the other: as many lists by themselves would take more memory than the vertices in them.
+#[derive(Debug, Clone, Default)]
+struct Lists {
     vertices: Vec<u32>,
+    /// Where in `vertices` each ends.
     ends: Vec<u32>,
 }
 
-impl Cube {
-    fn of(groups: &[Vec<u32>]) -> Self {
-        let ends = groups.iter().scan(0, |end, group| {
-            *end += group.len() as u32;
-            Some(*end)
-        });
-        Self {
-            vertices: groups.concat(),
-            ends: ends.collect(),
-        }
+impl Lists {
+    fn of(lists: &[Vec<u32>]) -> Self {
+        let mut all = Self::default();
+        lists.iter().for_each(|list| all.push(list));
+        all
     }
 
-    fn groups(&self) -> impl Iterator<Item = &[u32]> {
-        groups(&self.vertices, &self.ends)
+    fn push(&mut self, list: &[u32]) {
+        self.vertices.extend(list);
+        self.ends.push(self.vertices.len() as u32);
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
+        let begins = [0].into_iter().chain(self.ends.iter().copied());
+        let ranges = begins.zip(&self.ends);
+        ranges.map(|(begin, end)| &self.vertices[begin as usize..*end as usize])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Grouping tiles: first by the way they face and the side they are of, then in halves of space.
 
-use super::{APART, Cluster, Clusters, Node, Sends, Tile};
+use super::{Cluster, Clusters, Node, Sends, Tile};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
 use glam::Vec3;
@@ -84,7 +84,7 @@ impl Builder<'_> {
             first: node.middle,
             depth,
         };
-        if node.smaller_half() > APART {
+        if node.is_worth_two_threads() {
             let (mut nodes_left, mut nodes_right) = (Vec::new(), Vec::new());
             rayon::join(
                 || self.build(left, at_left, &mut nodes_left),
@@ -133,12 +133,9 @@ impl Builder<'_> {
             cone: (cosine, if cosine > 0.0 { sine } else { 1.0 }),
             axis,
             thickness: group.iter().map(aside).fold(0.0, f32::max),
-            strength: 0.0,
-            peak: 0.0,
             first,
-            middle: first,
             end: first + group.len() as u32,
-            second: 0,
+            ..Node::default()
         }
     }
 

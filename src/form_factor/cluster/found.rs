@@ -35,7 +35,8 @@ struct Pool {
 struct Loose {
     /// Σ of the bounds of all.
     bounds: f32,
-    drawn: Option<Drawn>,
+    /// One of them, and its bound.
+    drawn: Option<(Cluster, f32)>,
 }
 
 /// A cluster that was drawn of several.
@@ -126,11 +127,7 @@ impl Found {
         loose.bounds += bound;
         let drawn = jitter(key, cluster.key())[0] as f32 * loose.bounds < bound;
         if drawn || loose.drawn.is_none() {
-            loose.drawn = Some(Drawn {
-                cluster,
-                bound,
-                stands_for: 1.0,
-            });
+            loose.drawn = Some((cluster, bound));
         }
         if loose.bounds >= LOOSE * estimate {
             self.empty_loose()
@@ -142,9 +139,10 @@ impl Found {
     /// One to be drawn from of what is left.
     pub fn empty_loose(&mut self) -> Option<Drawn> {
         let Loose { bounds, drawn } = std::mem::take(&mut self.loose);
-        drawn.map(|drawn| Drawn {
-            stands_for: bounds / drawn.bound,
-            ..drawn
+        drawn.map(|(cluster, bound)| Drawn {
+            cluster,
+            bound,
+            stands_for: bounds / bound,
         })
     }
 

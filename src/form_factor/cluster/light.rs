@@ -1,6 +1,6 @@
 //! What clusters send, from what their tiles send.
 
-use super::{Aim, Cluster, Clusters, Node, Sends, on_both};
+use super::{Aim, Cluster, Clusters, Node, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
@@ -62,11 +62,13 @@ impl Clusters {
             let middle = node.second as usize - 1;
             let (nodes_left, nodes_right) = below.split_at_mut(middle);
             let (sends_left, sends_right) = sent_below.split_at_mut(middle);
-            let ((sent, peak), (other, other_peak)) = on_both(
-                node.smaller_half(),
-                || self.send(left, nodes_left, sends_left),
-                || self.send(right, nodes_right, sends_right),
-            );
+            let mut left = || self.send(left, nodes_left, sends_left);
+            let mut right = || self.send(right, nodes_right, sends_right);
+            let ((sent, peak), (other, other_peak)) = if node.is_worth_two_threads() {
+                rayon::join(left, right)
+            } else {
+                (left(), right())
+            };
             let draw = drawn(node.middle);
             (joined(sent, other, draw), peak.max(other_peak))
         };
@@ -128,14 +130,14 @@ impl Clusters {
     #[inline(always)]
     pub(super) fn sent_by(&self, place: u32) -> Sends {
         let (tile, radiosity) = self.tile(place);
-        let weight = self.weight(place);
+        let mean = self.mean(place);
+        let weight = tile.area() * mean;
         let centre = tile.centre();
         let corners = &tile.corners[..tile.corner_count()];
         // About its own centre a triangle or parallelogram has a twelfth of what its corners have.
         let inside = corners
             .iter()
             .map(|corner| products(*corner - centre, 1.0 / 12.0));
-        let mean = self.mean(place);
         Sends {
             flux: tile.normal * weight,
             weight,

@@ -23,25 +23,12 @@ pub use gather::ClusterScratch;
 use crate::radiometry::Spectrum;
 use glam::{DVec3, Vec3};
 
-/// The children of a node over no more tiles than this are these. With 4, `staircase2` takes as long and a ninth more memory; with 16 it takes a
-/// fiftieth longer, and a tenth less memory.
+/// The children of a node over no more tiles than this are these. With 4, `staircase2` takes as long and a sixth more memory; with 16 it takes a
+/// thirtieth longer, and a tenth less memory.
 const FEW: u32 = 8;
 
 /// Subtrees over more tiles than this are worth a thread.
 const APART: u32 = 1 << 10;
-
-/// Works on both subtrees of a node, side by side where that over fewer `tiles` is worth a thread.
-fn on_both<L: Send, R: Send>(
-    tiles: u32,
-    left: impl FnOnce() -> L + Send,
-    right: impl FnOnce() -> R + Send,
-) -> (L, R) {
-    if tiles > APART {
-        rayon::join(left, right)
-    } else {
-        (left(), right())
-    }
-}
 
 /// A flat triangle or quad that shoots.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -190,7 +177,7 @@ impl Clusters {
         places.map(|place| (&self.tiles[place], self.radiosity[place]))
     }
 
-    /// Memory that a tree over so many tiles holds, bytes.
+    /// Memory that a tree over so many tiles holds, bytes, were there a node for each two: there are fewer.
     pub const fn bytes_for(tiles: usize) -> u64 {
         let node = size_of::<Node>() + size_of::<Sends>();
         let tile = size_of::<Tile>() + size_of::<Spectrum>() + size_of::<u32>() + size_of::<f64>();
@@ -202,7 +189,7 @@ impl Clusters {
     fn node(&self, cluster: Cluster) -> Node {
         match cluster {
             Cluster::Node(number) => self.nodes[number as usize],
-            Cluster::Tile(place) => Node::of_tile(place, self.tile(place)),
+            Cluster::Tile(place) => Node::over_one(self.tile(place)),
         }
     }
 
@@ -241,9 +228,9 @@ impl Cluster {
 }
 
 impl Node {
-    /// Over one tile.
+    /// Over one tile: all that it takes to decide about that.
     #[inline(always)]
-    fn of_tile(place: u32, (tile, radiosity): (&Tile, Spectrum)) -> Self {
+    fn over_one((tile, radiosity): (&Tile, Spectrum)) -> Self {
         let centre = tile.centre();
         let from_centre = tile.corners.map(|corner| corner - centre);
         let most = |of: [f32; 4]| of.into_iter().fold(0.0, f32::max);
@@ -256,10 +243,7 @@ impl Node {
             thickness: most(from_centre.map(|corner| corner.dot(tile.normal).abs())),
             strength: tile.area() * peak,
             peak,
-            first: place,
-            middle: place,
-            end: place + 1,
-            second: 0,
+            ..Self::default()
         }
     }
 
@@ -278,8 +262,8 @@ impl Node {
         ]
     }
 
-    /// Tiles of the child that has fewer.
-    fn smaller_half(&self) -> u32 {
-        (self.middle - self.first).min(self.end - self.middle)
+    /// Whether both subtrees are worth a thread.
+    fn is_worth_two_threads(&self) -> bool {
+        self.middle - self.first > APART && self.end - self.middle > APART
     }
 }

@@ -155,6 +155,10 @@ fn each_tile_is_below_one_chain_of_nodes_that_hold_it_and_send_what_it_sends() {
             }
         }
         assert!(found.into_iter().eq(0..tiles.len() as u32));
+        assert!(
+            clusters.nodes.len() <= tiles.len() / 2,
+            "more than there is room for"
+        );
     }
 }
 
