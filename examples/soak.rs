@@ -362,7 +362,7 @@ fn difference(of: &Solution, other: &Solution) -> f64 {
         }
         let here = of.light.irradiance[element.centre as usize].as_dvec3();
         let point = of.mesh.frame.leave(of.mesh.position(element.centre));
-        let normal = of.mesh.patches[element.patch as usize].normal;
+        let normal = of.mesh.patch(element.patch).normal;
         let Some(there) = prober.probe(point, normal) else {
             continue;
         };

@@ -113,7 +113,7 @@ fn bounds(solution: &Solution) -> (DVec3, DVec3) {
     let corners = mesh
         .patches
         .iter()
-        .flat_map(|patch| patch.corners().iter().copied());
+        .flat_map(|patch| patch.corners().to_vec());
     let (low, high) = polygon::bounds(&Vec::from_iter(corners));
     (mesh.frame.leave(low), mesh.frame.leave(high))
 }

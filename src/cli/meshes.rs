@@ -115,7 +115,7 @@ impl Exporter<'_> {
         let mut two_sided = vec![false; self.lit.vertices.len()];
         for triangle in &self.lit.triangles {
             let patch = mesh.elements[triangle.element as usize].patch;
-            if both.contains(&mesh.patches[patch as usize].surface) {
+            if both.contains(&mesh.patch(patch).surface) {
                 triangle
                     .vertices
                     .iter()

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 /// Half the sum of cross products: its direction is the normal, its length the area.
+#[inline]
 pub fn vector_area(corners: &[DVec3]) -> DVec3 {
     let origin = corners[0];
     let fan = corners.windows(2).skip(1);

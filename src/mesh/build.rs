@@ -1,6 +1,8 @@
 //! From a scene to its coarsest mesh.
 
-use super::{Element, Lattice, Mesh, NONE, Patch, UNIT, contact};
+use super::patches::{Known, MOST_ALONG};
+use super::{Element, Lattice, Mesh, NONE, Patch, Patches, UNIT, contact};
+use crate::geometry::Frame;
 use crate::radiometry::exitance_from_radiance;
 use crate::scene::{Scene, Sides};
 use rustc_hash::FxHashMap;
@@ -29,19 +31,8 @@ impl Mesh {
         let regions = contact::regions(scene, &frame);
         let pieces = contact::pieces(scene, &frame, &regions);
         let mut mesh = Self {
-            frame,
             unsplit_contacts: pieces.unsplit,
-            patches: Vec::new(),
-            elements: Vec::new(),
-            vertices: Vec::new(),
-            buried: Vec::new(),
-            weights: Vec::new(),
-            buried_weights: FxHashMap::default(),
-            touched: Vec::new(),
-            continuation: Default::default(),
-            weld: Default::default(),
-            at: FxHashMap::default(),
-            limits,
+            ..Self::empty(frame, limits)
         };
         let many = pieces.list.len() > MANY;
         let shortest = if many {
@@ -49,6 +40,7 @@ impl Mesh {
         } else {
             0.0
         };
+        let mut known = Known::default();
         for piece in pieces.list {
             let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
@@ -57,18 +49,40 @@ impl Mesh {
             front.outline = piece.outline;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
-            mesh.add_patch(front, shortest);
+            mesh.add_patch(front, shortest, &mut known);
             if surface.sides == Sides::Both {
                 corners.reverse();
                 let mut back = Patch::new(piece.surface, surface.polygon, &corners, true);
                 back.outline = reversed(piece.outline, corners.len());
                 back.reflectance = material.reflectance;
-                mesh.add_patch(back, shortest);
+                mesh.add_patch(back, shortest, &mut known);
             }
         }
+        drop(known);
+        mesh.patches.shrink();
         mesh.split_to_initial_size();
         mesh.finish_topology(0, &[]);
         mesh
+    }
+
+    /// A mesh of nothing.
+    pub(super) fn empty(frame: Frame, limits: MeshLimits) -> Self {
+        Self {
+            frame,
+            patches: Patches::default(),
+            elements: Vec::new(),
+            vertices: Vec::new(),
+            buried: Vec::new(),
+            weights: Vec::new(),
+            buried_weights: FxHashMap::default(),
+            continuation: Default::default(),
+            weld: Default::default(),
+            touched: Vec::new(),
+            later: FxHashMap::default(),
+            at: FxHashMap::default(),
+            limits,
+            unsplit_contacts: 0,
+        }
     }
 
     /// What bounds the refinement.
@@ -76,14 +90,16 @@ impl Mesh {
         &self.limits
     }
 
-    fn add_patch(&mut self, mut patch: Patch, shortest: f64) {
+    fn add_patch(&mut self, mut patch: Patch, shortest: f64, known: &mut Known) {
         let id = self.patches.len() as u32;
-        let first = self.elements.len() as u32;
         patch.grid = grid_of(&patch, shortest);
         let (columns, rows) = patch.grid;
-        self.patches.push(patch);
+        let first = self.elements.len() as u32;
+        patch.roots = first..first + columns * rows;
+        patch.first_vertex = self.vertices.len() as u32;
+        self.patches.push(&patch, known);
         self.touched.push(true);
-        if self.patches[id as usize].is_triangle() {
+        if patch.is_triangle() {
             self.add_root(
                 id,
                 &[
@@ -102,12 +118,9 @@ impl Mesh {
                 }
             }
         }
-        self.patches[id as usize].roots = first..self.elements.len() as u32;
     }
 
     fn add_root(&mut self, patch: u32, corners: &[Lattice]) {
-        let centre = centre_of(corners);
-        let inwards = self.inwards(patch, corners, centre);
         let mut element = Element {
             patch,
             corners: [NONE; 4],
@@ -117,10 +130,22 @@ impl Mesh {
             level: 0,
         };
         for (slot, corner) in element.corners.iter_mut().zip(corners) {
-            *slot = self.vertex(patch, *corner, inwards);
+            *slot = self.first_vertex(patch, *corner);
         }
-        element.centre = self.vertex(patch, centre, inwards);
+        element.centre = self.first_vertex(patch, centre_of(corners));
         self.elements.push(element);
+    }
+
+    /// A vertex of the coarsest grid of a patch. Those of a single element are all new.
+    fn first_vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
+        if !self.is_indexed(patch) {
+            return self.make_vertex(patch, lattice);
+        }
+        self.vertex_at(patch, lattice).unwrap_or_else(|| {
+            let vertex = self.make_vertex(patch, lattice);
+            self.index(vertex);
+            vertex
+        })
     }
 
     fn split_to_initial_size(&mut self) {
@@ -169,7 +194,7 @@ fn grid_of(patch: &Patch, shortest: f64) -> (u32, u32) {
     let most = (width.max(height) / shortest)
         .log2()
         .floor()
-        .clamp(0.0, 10.0);
+        .clamp(0.0, f64::from(MOST_ALONG).log2());
     let steps = (width / height).log2().round().clamp(-most, most) as i32;
     (1 << steps.max(0), 1 << (-steps).max(0))
 }

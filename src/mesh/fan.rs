@@ -29,7 +29,7 @@ impl Mesh {
 
     /// The leaf that covers the point (u, v) of a patch, coordinates clamped to the patch.
     pub fn leaf_at(&self, patch: u32, u: f64, v: f64) -> u32 {
-        let of = &self.patches[patch as usize];
+        let of = self.patch(patch);
         let (columns, rows) = of.grid;
         let cell = |x: f64, n: u32| ((x * f64::from(n)).max(0.0) as u32).min(n - 1);
         let mut element = of.roots.start + cell(v, rows) * columns + cell(u, columns);
@@ -99,7 +99,7 @@ impl Mesh {
     /// gets the nearest triangle's continuation, clamped to it.
     pub fn interpolate(&self, leaf: u32, point: DVec3) -> [Weighted; 3] {
         let of = &self.elements[leaf as usize];
-        let normal = self.patches[of.patch as usize].normal;
+        let normal = self.patch(of.patch).normal;
         let centre = self.position(of.centre);
         let mut next = self.position(of.corners[0]);
         let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
@@ -140,7 +140,7 @@ impl Mesh {
         let (u, v) = lattice.unit();
         self.interpolate(
             self.leaf_at(patch, u, v),
-            self.patches[patch as usize].position(lattice),
+            self.patch(patch).position(lattice),
         )
     }
 }

@@ -3,6 +3,7 @@
 use super::{Element, Mesh, NONE};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::mem::take;
 
 /// How much of its area a quadrilateral, and a triangle, gives to its centre beyond what the linear interpolant on its fan does, at
 /// its corners' expense. Light is mostly curved one way over an element: the interpolant cuts its tops off, and each reflection would
@@ -14,7 +15,7 @@ impl Mesh {
     /// Computes the weights of the vertices of some patches.
     pub(super) fn integrate(&mut self, patches: &[u32]) {
         let leaves = patches.par_iter().with_min_len(64).flat_map_iter(|patch| {
-            let mut leaves = self.leaves_of(&self.patches[*patch as usize]);
+            let mut leaves = self.leaves_of(&self.patch(*patch));
             // Any way to the same mesh adds in the same order.
             leaves.sort_unstable();
             leaves
@@ -37,13 +38,11 @@ impl Mesh {
             .with_min_len(1024)
             .map(|leaf| triangles(&self.elements[*leaf as usize]))
             .collect();
-        let vertices = patches
-            .iter()
-            .flat_map(|p| &self.patches[*p as usize].vertices);
-        let vertices = vertices.map(|v| *v as usize);
-        let weights = &mut self.weights;
+        let mut weights = take(&mut self.weights);
+        let mut buried_weights = take(&mut self.buried_weights);
+        let vertices = patches.iter().flat_map(|p| self.vertices_of(*p));
         weights.resize(self.vertices.len(), 0.0);
-        vertices.clone().for_each(|v| weights[v] = 0.0);
+        vertices.clone().for_each(|v| weights[v as usize] = 0.0);
         for (leaf, areas) in leaves.iter().zip(areas) {
             let of = &self.elements[*leaf as usize];
             let corners = of.corners();
@@ -63,11 +62,12 @@ impl Mesh {
         }
         for v in vertices {
             // No less than nothing, but for rounding.
-            weights[v] = weights[v].max(0.0);
-            if self.buried[v] {
-                let weight = std::mem::take(&mut weights[v]);
-                self.buried_weights.insert(v as u32, weight);
+            let weight = &mut weights[v as usize];
+            *weight = weight.max(0.0);
+            if self.buried[v as usize] {
+                buried_weights.insert(v, take(weight));
             }
         }
+        (self.weights, self.buried_weights) = (weights, buried_weights);
     }
 }

@@ -15,8 +15,10 @@ mod fan;
 mod integral;
 mod lattice;
 mod patch;
+mod patches;
 mod refine;
 mod restore;
+mod stored;
 mod weld;
 
 pub use build::MeshLimits;
@@ -24,34 +26,36 @@ pub use contact::{Piece, Pieces, Regions, pieces as split_at_contacts, regions};
 pub use element::{Element, NONE};
 pub use lattice::{Lattice, UNIT};
 pub use patch::{Patch, SideKey};
+pub use patches::Patches;
+pub use stored::StoredMesh;
 
 use crate::geometry::Frame;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
-use serde::{Deserialize, Serialize};
 
 /// A patch with no more vertices than one element has is searched through: most patches of a large scene are such, and an index of theirs
 /// would be as large as they are.
 const FEW: usize = 5;
 
-/// A vertex: a corner or the centre of elements of one patch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// A vertex: a corner or the centre of elements of one patch. Where it is in the frame is found when it is asked for: kept, that would
+/// be more than all the rest of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
     /// The patch that it belongs to.
     pub patch: u32,
     /// Where it is on its patch.
     pub lattice: Lattice,
-    /// Where light is evaluated, in the frame: the position, moved a hair inwards on the border of the patch.
-    pub point: DVec3,
+    /// The first element that has it, for which it was made.
+    maker: u32,
 }
 
 /// The adaptive mesh of a scene, without the light on it.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Mesh {
     /// From scene to mesh coordinates.
     pub frame: Frame,
     /// The radiating sides, in the order of the scene's surfaces, of which each may be in several pieces.
-    pub patches: Vec<Patch>,
+    pub patches: Patches,
     /// All elements, parents included; children follow one another.
     pub elements: Vec<Element>,
     /// All vertices, in the order of their making.
@@ -60,24 +64,19 @@ pub struct Mesh {
     pub buried: Vec<bool>,
     /// The area that each vertex stands for, 0 if it is buried: the integral of a quantity over what is open is Σ weight · value,
     /// exact to the second degree.
-    #[serde(skip)]
     pub weights: Vec<f64>,
     /// The area that each buried vertex would stand for.
-    #[serde(skip)]
     buried_weights: FxHashMap<u32, f64>,
-    #[serde(skip)]
     continuation: buried::Continuation,
-    #[serde(skip)]
     weld: weld::Weld,
     /// Patches that were split since hanging vertices were last found.
-    #[serde(skip)]
     touched: Vec<bool>,
+    /// The vertices that a patch got after those of its coarsest grid, which follow one another, if it got any.
+    later: FxHashMap<u32, Vec<u32>>,
     /// The vertices of patches that have more than [`FEW`], by place.
-    #[serde(skip)]
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
     /// Surfaces that could not be split along the lines in which others meet them: light may leak there.
-    #[serde(skip)]
     pub unsplit_contacts: usize,
 }
 
@@ -109,34 +108,52 @@ impl Mesh {
 
     /// How many leaves there are: a split makes four elements of one.
     pub fn leaf_count(&self) -> usize {
-        let roots = self.patches.last().map_or(0, |patch| patch.roots.end);
-        let roots = roots as usize;
+        let roots = self.patches.iter().next_back();
+        let roots = roots.map_or(0, |patch| patch.roots.end) as usize;
         roots + (self.elements.len() - roots) / 4 * 3
+    }
+
+    /// The patch with a number.
+    #[inline(always)]
+    pub fn patch(&self, number: u32) -> Patch {
+        self.patches.at(number as usize)
+    }
+
+    /// The vertices of a patch, in the order of their making.
+    pub fn vertices_of(&self, patch: u32) -> impl Iterator<Item = u32> + Clone + '_ {
+        self.patch(patch)
+            .first_vertices()
+            .chain(self.later_of(patch))
+    }
+
+    /// How many vertices a patch has.
+    pub fn vertex_count(&self, patch: u32) -> usize {
+        self.patch(patch).first_vertices().len() + self.later_of(patch).len()
+    }
+
+    fn later_of(&self, patch: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+        let later = self.later.get(&patch).map_or(&[][..], Vec::as_slice);
+        later.iter().copied()
     }
 
     /// The vertex of a patch at a lattice point, if there is one.
     pub fn vertex_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
-        let vertices = &self.patches[patch as usize].vertices;
-        if vertices.len() > FEW {
+        if self.is_indexed(patch) {
             return self.at.get(&(patch, lattice)).copied();
         }
         let is_there = |v: &u32| self.vertices[*v as usize].lattice == lattice;
-        vertices.iter().copied().find(is_there)
+        self.patch(patch).first_vertices().find(is_there)
     }
 
-    /// Takes the vertices of a patch into the index from its `number`th on.
-    fn index(&mut self, patch: u32, number: usize) {
-        let vertices = &self.patches[patch as usize].vertices;
-        let from = match vertices.len() {
-            0..=FEW => return,
-            // Those before it were few.
-            count if count == FEW + 1 => 0,
-            _ => number,
-        };
-        for vertex in &vertices[from..] {
-            let lattice = self.vertices[*vertex as usize].lattice;
-            self.at.insert((patch, lattice), *vertex);
-        }
+    /// Whether a patch has more than [`FEW`] vertices.
+    fn is_indexed(&self, patch: u32) -> bool {
+        self.patch(patch).first_vertices().len() > FEW || self.later.contains_key(&patch)
+    }
+
+    /// Takes a vertex into the index.
+    fn index(&mut self, vertex: u32) {
+        let Vertex { patch, lattice, .. } = self.vertices[vertex as usize];
+        self.at.insert((patch, lattice), vertex);
     }
 
     /// The area that a vertex stands for, buried or not.
@@ -150,7 +167,19 @@ impl Mesh {
     /// Position of a vertex in the frame.
     pub fn position(&self, vertex: u32) -> DVec3 {
         let vertex = &self.vertices[vertex as usize];
-        self.patches[vertex.patch as usize].position(vertex.lattice)
+        self.patch(vertex.patch).position(vertex.lattice)
+    }
+
+    /// Where light is evaluated at a vertex, in the frame: its position, moved a hair inwards on the border of its patch.
+    pub fn point(&self, vertex: u32) -> DVec3 {
+        let of = &self.vertices[vertex as usize];
+        let patch = self.patch(of.patch);
+        let position = patch.position(of.lattice);
+        if patch.on_border(of.lattice) {
+            self.inwards(of.maker, position)
+        } else {
+            position
+        }
     }
 
     /// The deepest level of any element.

@@ -4,20 +4,21 @@ use super::lattice::{Lattice, UNIT};
 use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
+use std::ops::Range;
 
 /// See [`Patch::side_key`].
 pub type SideKey = [[u64; 3]; 2];
 
 /// A planar convex polygon that shoots, and carries elements that receive.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
     /// Index into `Scene::surfaces`; the first of several that are meshed as one.
     pub surface: u32,
     /// The input polygon it lies on: that of `surface`.
     pub polygon: u32,
     /// Corners in the frame, counter-clockwise seen from the radiating side; a triangle repeats its first.
-    corners: [DVec3; 4],
-    corner_count: u8,
+    pub(super) corners: [DVec3; 4],
+    pub(super) corner_count: u8,
     /// Which of its sides are sides of the input polygon, rather than cuts through it.
     pub outline: [bool; 4],
     /// Whether it is the back of its surface.
@@ -31,14 +32,15 @@ pub struct Patch {
     /// Exitance M, W/m².
     pub exitance: Spectrum,
     /// Elements of the coarsest grid.
-    pub roots: std::ops::Range<u32>,
+    pub roots: Range<u32>,
     /// Columns and rows of the coarsest grid; (1, 1) for a triangle.
     pub grid: (u32, u32),
-    /// Its vertices.
-    pub vertices: Vec<u32>,
+    /// The first vertex of that, which others follow.
+    pub(super) first_vertex: u32,
 }
 
 impl Patch {
+    #[inline(always)]
     pub(super) fn new(surface: u32, polygon: u32, corners: &[DVec3], back: bool) -> Self {
         let vector_area = polygon::vector_area(corners);
         let area = vector_area.length();
@@ -60,24 +62,8 @@ impl Patch {
             exitance: Spectrum::ZERO,
             roots: 0..0,
             grid: (1, 1),
-            vertices: Vec::new(),
+            first_vertex: 0,
         }
-    }
-
-    /// Whether its parts fit each other; those of one that was read may not.
-    pub(super) fn is_sound(&self) -> bool {
-        let corners = match self.corner_count {
-            3 | 4 => self.corners(),
-            _ => return false,
-        };
-        let made = Self::new(self.surface, self.polygon, corners, self.back);
-        let within = |x: f32| (0.0..=1.0).contains(&x);
-        made.corners == self.corners
-            && made.area == self.area
-            && made.normal == self.normal
-            && self.area > 0.0
-            && self.reflectance.to_array().into_iter().all(within)
-            && self.exitance.is_finite()
     }
 
     /// Its three or four corners.
@@ -93,6 +79,17 @@ impl Patch {
         let [a, b] = [side, (side + 1) % corners.len()].map(|i| bits(corners[i]));
         let turned = a > b;
         (if turned { [b, a] } else { [a, b] }, turned)
+    }
+
+    /// The vertices of its coarsest grid.
+    pub fn first_vertices(&self) -> Range<u32> {
+        let (columns, rows) = self.grid;
+        let count = if self.is_triangle() {
+            4
+        } else {
+            (columns + 1) * (rows + 1) + columns * rows
+        };
+        self.first_vertex..self.first_vertex + count
     }
 
     /// Whether it has three corners.

@@ -16,23 +16,10 @@ const CLEARANCE: f64 = 2.0 * SURFACE_OFFSET;
 /// … but never more than this fraction.
 const MOST_INWARDS: f64 = 0.15;
 
-/// The centre of an element, and how far towards it its vertices on the border of the patch are evaluated.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Inwards {
-    centre: DVec3,
-    way: f64,
-}
-
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
-        let of = &self.elements[element as usize];
-        let patch = &self.patches[of.patch as usize];
-        let count = of.corners().len();
-        let mut corners = [DVec3::ZERO; 4];
-        for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
-            *corner = patch.position(self.vertices[*vertex as usize].lattice);
-        }
+        let (corners, count) = self.corner_positions(&self.elements[element as usize]);
         let square = |i: usize| corners[i].distance_squared(corners[(i + 1) % count]);
         (0..count).map(square).fold(0.0, f64::max).sqrt()
     }
@@ -83,8 +70,6 @@ impl Mesh {
         }
         for corners in &mut children {
             let corners = &corners[..count];
-            let centre = centre_of(corners);
-            let inwards = self.inwards(parent.patch, corners, centre);
             let mut child = Element {
                 corners: [NONE; 4],
                 level: parent.level + 1,
@@ -92,53 +77,62 @@ impl Mesh {
                 ..parent
             };
             for (slot, corner) in child.corners.iter_mut().zip(corners) {
-                *slot = self.vertex(parent.patch, *corner, inwards);
+                *slot = self.vertex(parent.patch, *corner);
             }
-            child.centre = self.vertex(parent.patch, centre, inwards);
+            child.centre = self.vertex(parent.patch, centre_of(corners));
             self.elements.push(child);
         }
         self.elements[element as usize].children = first;
         first
     }
 
-    /// The vertex at a lattice point, made if there is none, as far `inwards` as the element that asks wants it.
-    pub(super) fn vertex(&mut self, patch: u32, lattice: Lattice, inwards: Inwards) -> u32 {
+    /// The vertex at a lattice point; if there is none it is made, for the next element.
+    fn vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
         if let Some(vertex) = self.vertex_at(patch, lattice) {
             return vertex;
         }
-        let owner = &mut self.patches[patch as usize];
-        let position = owner.position(lattice);
-        let point = if owner.on_border(lattice) {
-            position.lerp(inwards.centre, inwards.way)
-        } else {
-            position
-        };
-        let vertex = self.vertices.len() as u32;
-        owner.vertices.push(vertex);
-        self.vertices.push(Vertex {
-            patch,
-            lattice,
-            point,
-        });
-        let number = self.patches[patch as usize].vertices.len() - 1;
-        self.index(patch, number);
+        if !self.is_indexed(patch) {
+            let first = self.patch(patch).first_vertices();
+            first.for_each(|v| self.index(v));
+        }
+        let vertex = self.make_vertex(patch, lattice);
+        self.later.entry(patch).or_default().push(vertex);
+        self.index(vertex);
         vertex
     }
 
-    /// Where the vertices of an element with these corners are evaluated if they are on the border of its patch.
-    pub(super) fn inwards(&self, patch: u32, corners: &[Lattice], centre: Lattice) -> Inwards {
-        let at = |lattice: Lattice| self.patches[patch as usize].position(lattice);
-        let centre = at(centre);
+    /// A new vertex, for the next element.
+    pub(super) fn make_vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
+        self.vertices.push(Vertex {
+            patch,
+            lattice,
+            maker: self.elements.len() as u32,
+        });
+        self.vertices.len() as u32 - 1
+    }
+
+    /// A position on the border of a patch, moved towards the centre of an element.
+    pub(super) fn inwards(&self, element: u32, position: DVec3) -> DVec3 {
+        let of = &self.elements[element as usize];
+        let (corners, count) = self.corner_positions(of);
+        let centre = self.position(of.centre);
         let depth = |i: usize| {
-            let [a, b] = [i, (i + 1) % corners.len()].map(|i| at(corners[i]));
+            let [a, b] = [i, (i + 1) % count].map(|i| corners[i]);
             (b - a).normalize_or_zero().cross(centre - a).length()
         };
-        let nearest = (0..corners.len()).map(depth).fold(f64::INFINITY, f64::min);
+        let nearest = (0..count).map(depth).fold(f64::INFINITY, f64::min);
         let clear = CLEARANCE * self.frame.extent() / nearest;
-        Inwards {
-            centre,
-            way: clear.clamp(INWARDS, MOST_INWARDS),
+        position.lerp(centre, clear.clamp(INWARDS, MOST_INWARDS))
+    }
+
+    /// The positions of the corners of an element, and how many there are.
+    fn corner_positions(&self, of: &Element) -> ([DVec3; 4], usize) {
+        let patch = self.patch(of.patch);
+        let mut corners = [DVec3::ZERO; 4];
+        for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
+            *corner = patch.position(self.vertices[*vertex as usize].lattice);
         }
+        (corners, of.corners().len())
     }
 
     /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.

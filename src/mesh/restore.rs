@@ -2,35 +2,21 @@
 
 use super::{Mesh, UNIT, Vertex};
 
+/// An error if what was read does not hold.
+pub(super) fn check(holds: bool, what: &str) -> Result<(), String> {
+    if holds {
+        Ok(())
+    } else {
+        Err(format!("{what} out of range"))
+    }
+}
+
 impl Mesh {
-    /// Checks a mesh that was read and restores what is not stored. Errors say what does not fit.
-    pub fn restore(&mut self) -> Result<(), String> {
+    /// Checks the parts of a mesh that was read, but for its patches, and restores what is not stored.
+    pub(super) fn restore(&mut self) -> Result<(), String> {
         let (patches, elements, vertices) =
             (self.patches.len(), self.elements.len(), self.vertices.len());
-        let check = |holds: bool, what: &str| {
-            if holds {
-                Ok(())
-            } else {
-                Err(format!("{what} out of range"))
-            }
-        };
         check(self.frame.is_sound(), "the frame")?;
-        for patch in &self.patches {
-            check(patch.is_sound(), "a patch")?;
-            check(
-                patch.roots.start <= patch.roots.end && patch.roots.end as usize <= elements,
-                "a root element",
-            )?;
-            let roots = patch.grid.0.checked_mul(patch.grid.1);
-            check(
-                roots.is_some_and(|n| n > 0 && n == patch.roots.end - patch.roots.start),
-                "a grid",
-            )?;
-            check(
-                patch.vertices.iter().all(|v| (*v as usize) < vertices),
-                "a vertex of a patch",
-            )?;
-        }
         for (number, element) in self.elements.iter().enumerate() {
             check(
                 (element.patch as usize) < patches,
@@ -47,17 +33,27 @@ impl Mesh {
                 "the children of an element",
             )?;
         }
+        for (number, element) in (0..).zip(&self.elements) {
+            for vertex in element.vertices() {
+                let maker = &mut self.vertices[vertex as usize].maker;
+                *maker = number.min(*maker);
+            }
+        }
         let on_a_patch = |v: &Vertex| {
             (v.patch as usize) < patches
                 && v.lattice.u.max(v.lattice.v) <= UNIT
-                && v.point.is_finite()
+                && (v.maker as usize) < elements
         };
         check(self.vertices.iter().all(on_a_patch), "a vertex")?;
         check(
             self.buried.len() == vertices,
             "the number of buried vertices",
         )?;
-        (0..patches as u32).for_each(|patch| self.index(patch, 0));
+        for vertex in 0..vertices as u32 {
+            if self.is_indexed(self.vertices[vertex as usize].patch) {
+                self.index(vertex);
+            }
+        }
         let buried = std::mem::take(&mut self.buried);
         self.touched = vec![true; patches];
         self.finish_topology(0, &buried);

@@ -92,15 +92,15 @@ impl Mesh {
     /// Where a vertex receives, and the normal with which it does.
     pub fn receiver(&self, vertex: u32) -> (DVec3, DVec3) {
         let of = &self.vertices[vertex as usize];
-        let patch = &self.patches[of.patch as usize];
+        let patch = self.patch(of.patch);
         if self.weld.sites.is_empty() {
-            return (of.point, patch.normal);
+            return (self.point(vertex), patch.normal);
         }
         match self.site(vertex) {
             Some((point, normal)) => (*point, normal.as_dvec3()),
             None => (
-                of.point,
-                self.interpolated_normal(patch, of.patch, of.lattice),
+                self.point(vertex),
+                self.interpolated_normal(&patch, of.patch, of.lattice),
             ),
         }
     }
@@ -127,7 +127,7 @@ impl Mesh {
 
     /// The vertices in the corners of each patch.
     fn corner_vertices(&self) -> Vec<[u32; 4]> {
-        let corners = |(number, patch): (usize, &Patch)| {
+        let corners = |(number, patch): (usize, Patch)| {
             let root = &self.elements[patch.roots.start as usize];
             if patch.roots.len() == 1 {
                 return root.corners;
@@ -154,7 +154,7 @@ impl Mesh {
 
     /// The sides of a patch, with the vertices at their ends.
     fn sides_of(&self, number: u32, corners: &[u32; 4]) -> impl Iterator<Item = Side> {
-        let patch = &self.patches[number as usize];
+        let patch = self.patch(number);
         let count = patch.corners().len();
         (0..count).map(move |side| {
             let (key, turned) = patch.side_key(side);
@@ -167,7 +167,7 @@ impl Mesh {
     /// Of all patches on one side, the ends of those of two surfaces that belong together: both fronts, or both backs. The side between two
     /// pieces of one surface is a line of contact: something stands there.
     fn ends(&self, sides: &[Side]) -> Vec<[u32; 2]> {
-        let patch = |side: &Side| &self.patches[side.1 as usize];
+        let patch = |side: &Side| self.patch(side.1);
         let mut surfaces: Vec<u32> = sides.iter().map(|side| patch(side).surface).collect();
         surfaces.dedup();
         if surfaces.len() != 2 {
@@ -176,7 +176,8 @@ impl Mesh {
         let mut ends = Vec::new();
         for (i, a) in sides.iter().enumerate() {
             for b in &sides[i + 1..] {
-                if patch(a).surface != patch(b).surface && self.belong_together(patch(a), patch(b))
+                if patch(a).surface != patch(b).surface
+                    && self.belong_together(&patch(a), &patch(b))
                 {
                     ends.extend([[a.2, b.2], [a.3, b.3]]);
                 }
@@ -196,19 +197,17 @@ impl Mesh {
 
     /// Where and with which normal the corners in a site receive as one, if they can.
     fn settled(&self, site: &[u32]) -> Option<(DVec3, Vec3)> {
-        let patch_of = |v: &u32| &self.patches[self.vertices[*v as usize].patch as usize];
+        let patch_of = |v: &u32| self.patch(self.vertices[*v as usize].patch);
         let position = self.position(site[0]);
         let normal: DVec3 = site
             .iter()
-            .map(|v| patch_of(v).normal * angle_at(patch_of(v), position))
+            .map(|v| patch_of(v).normal * angle_at(&patch_of(v), position))
             .sum();
         let normal = normal.normalize_or_zero();
         if site.iter().any(|v| patch_of(v).normal.dot(normal) < FACING) {
             return None;
         }
-        let moved = site
-            .iter()
-            .map(|v| self.vertices[*v as usize].point - position);
+        let moved = site.iter().map(|v| self.point(*v) - position);
         let mean = moved.sum::<DVec3>() / site.len() as f64;
         // Not below any of its patches.
         let below = |v: &u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);

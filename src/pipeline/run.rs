@@ -2,7 +2,7 @@
 
 use super::report::{blank, take_in, warn_of_backs};
 use super::{Settings, SolveError};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
 use crate::scene::Scene;
 use crate::solution::{Continuation, Report, Solution};
@@ -164,15 +164,20 @@ impl Run {
             .scene
             .differs_but_in_emission(&scene)
             .map_err(SolveError::OtherScene)?;
-        for (number, patch) in solution.mesh.patches.iter_mut().enumerate() {
+        let exitance = |patch: &Patch| {
             let surface = &scene.surfaces[patch.surface as usize];
             let material = &scene.materials[surface.material as usize];
-            if !patch.back {
-                let exitance = exitance_from_radiance(material.emitted_radiance);
-                solution.light.exitance_unshot[number] += exitance - patch.exitance;
-                patch.exitance = exitance;
+            if patch.back {
+                patch.exitance
+            } else {
+                exitance_from_radiance(material.emitted_radiance)
             }
+        };
+        let unshot = solution.light.exitance_unshot.iter_mut();
+        for (unshot, patch) in unshot.zip(solution.mesh.patches.iter()) {
+            *unshot += exitance(&patch) - patch.exitance;
         }
+        solution.mesh.patches.relight(exitance);
         if solution
             .mesh
             .patches

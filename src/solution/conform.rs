@@ -51,7 +51,7 @@ impl Borders {
         let tolerance = WELD * mesh.frame.extent();
         let on_border = |v: &u32| {
             let vertex = &mesh.vertices[*v as usize];
-            mesh.patches[vertex.patch as usize].on_border(vertex.lattice)
+            mesh.patch(vertex.patch).on_border(vertex.lattice)
         };
         let vertices: Vec<u32> = (0..mesh.vertices.len() as u32).filter(on_border).collect();
         let all = vertices
@@ -130,7 +130,7 @@ enum Key {
 impl Builder<'_> {
     fn add(&mut self, leaf: u32) {
         let of = self.mesh.elements[leaf as usize];
-        let patch = &self.mesh.patches[of.patch as usize];
+        let patch = self.mesh.patch(of.patch);
         let centre = self.vertex(of.centre);
         for (side, a, b) in of.sides() {
             let chain: &[u32] = if of.hanging[side] == NONE {
@@ -218,7 +218,7 @@ impl Builder<'_> {
         irradiance: Spectrum,
         buried: bool,
     ) -> u32 {
-        let of = &self.mesh.patches[patch as usize];
+        let of = self.mesh.patch(patch);
         let radiosity = of.exitance + of.reflectance * irradiance;
         let number = self.lit.vertices.len() as u32;
         self.lit.vertices.push(LitVertex {

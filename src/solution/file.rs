@@ -5,7 +5,7 @@
 //! still read (`format_1`).
 
 use super::{Continuation, Report, Solution, format_1};
-use crate::mesh::Mesh;
+use crate::mesh::StoredMesh;
 use crate::scene::Camera;
 use crate::solver::Light;
 use serde::{Deserialize, Serialize};
@@ -41,11 +41,11 @@ pub enum SolutionError {
 
 /// The payload.
 #[derive(Serialize, Deserialize)]
-struct Stored<'a> {
+struct Stored<'a, M> {
     report: String,
     cameras: Cow<'a, [Camera]>,
     metres_per_unit: f64,
-    mesh: Cow<'a, Mesh>,
+    mesh: M,
     light: Cow<'a, Light>,
     continuation: Cow<'a, Option<Continuation>>,
 }
@@ -97,7 +97,7 @@ impl Solution {
             report: serde_json::to_string(&self.report)?,
             cameras: Cow::Borrowed(&self.cameras),
             metres_per_unit: self.metres_per_unit,
-            mesh: Cow::Borrowed(&self.mesh),
+            mesh: &self.mesh,
             light: Cow::Borrowed(&self.light),
             continuation: Cow::Borrowed(&self.continuation),
         };
@@ -162,22 +162,21 @@ impl Solution {
 
     /// Decodes what follows the header of a file of the present format. Any bytes give a sound solution or an error.
     pub fn from_payload(payload: &[u8]) -> Result<Self, String> {
-        let stored: Stored = postcard::from_bytes(payload).map_err(undecodable)?;
+        let stored: Stored<StoredMesh> = postcard::from_bytes(payload).map_err(undecodable)?;
         let report: Report = serde_json::from_str(&stored.report).map_err(undecodable)?;
         let solution = Self {
             report,
             cameras: stored.cameras.into_owned(),
             metres_per_unit: stored.metres_per_unit,
-            mesh: stored.mesh.into_owned(),
+            mesh: stored.mesh.restored()?,
             light: stored.light.into_owned(),
             continuation: stored.continuation.into_owned(),
         };
         solution.checked()
     }
 
-    /// Checks that the parts fit each other, and restores what is not stored.
-    fn checked(mut self) -> Result<Self, String> {
-        self.mesh.restore()?;
+    /// Checks that the parts fit each other.
+    fn checked(self) -> Result<Self, String> {
         let (vertices, patches) = (self.mesh.vertices.len(), self.mesh.patches.len());
         let light = &self.light;
         if light.irradiance.len() != vertices || light.unshot.len() != vertices {
@@ -194,7 +193,7 @@ impl Solution {
             scene.check()?;
             course.check(&self.mesh)?;
             let surfaces = scene.surfaces.len();
-            let on_scene = |p: &crate::mesh::Patch| (p.surface as usize) < surfaces;
+            let on_scene = |p: crate::mesh::Patch| (p.surface as usize) < surfaces;
             if !self.mesh.patches.iter().all(on_scene) {
                 return Err("a patch of no surface".into());
             }

@@ -2,7 +2,7 @@
 
 use super::file::undecodable;
 use super::{EngineReport, PowerReport, Report, Seconds, Solution, TargetReport};
-use crate::mesh::{Mesh, MeshLimits};
+use crate::mesh::{MeshLimits, StoredMesh};
 use crate::radiometry::Spectrum;
 use crate::scene::Camera;
 use crate::solver::{
@@ -16,7 +16,7 @@ struct SolutionThen {
     report: ReportThen,
     cameras: Vec<Camera>,
     metres_per_unit: f64,
-    mesh: Mesh,
+    mesh: StoredMesh,
     light: LightThen,
 }
 
@@ -104,14 +104,15 @@ struct OptionsThen {
 /// Decodes the payload; the parts are not held against each other yet.
 pub(super) fn decode(payload: &[u8]) -> Result<Solution, String> {
     let then: SolutionThen = postcard::from_bytes(payload).map_err(undecodable)?;
-    let exitance = |(unshot, patch): (&bool, &crate::mesh::Patch)| {
+    let mesh = then.mesh.restored()?;
+    let exitance = |(unshot, patch): (&bool, crate::mesh::Patch)| {
         if *unshot {
             patch.exitance
         } else {
             Spectrum::ZERO
         }
     };
-    let patches = then.mesh.patches.iter();
+    let patches = mesh.patches.iter();
     let exitance_unshot = then.light.exitance_unshot.iter().zip(patches).map(exitance);
     Ok(Solution {
         report: then.report.into(),
@@ -122,7 +123,7 @@ pub(super) fn decode(payload: &[u8]) -> Result<Solution, String> {
             irradiance: then.light.irradiance,
             unshot: then.light.unshot,
         },
-        mesh: then.mesh,
+        mesh,
         continuation: None,
     })
 }

@@ -61,7 +61,7 @@ impl<'a> Prober<'a> {
         let envelope = AABB::from_corners((point - margin).to_array(), (point + margin).to_array());
         let mut best: Option<(f64, f64, u32)> = None;
         for candidate in self.patches.locate_in_envelope_intersecting(envelope) {
-            let patch = &mesh.patches[candidate.data as usize];
+            let patch = mesh.patch(candidate.data);
             let facing = patch.normal.dot(normal);
             let distance = polygon::distance(point, patch.corners(), patch.normal);
             if facing > 0.5 && distance <= self.tolerance {
@@ -80,7 +80,7 @@ impl<'a> Prober<'a> {
 
     fn on_patch(&self, patch: u32, point: DVec3) -> Probe {
         let Solution { mesh, light, .. } = self.solution;
-        let of = &mesh.patches[patch as usize];
+        let of = mesh.patch(patch);
         let (u, v) = of.coordinates(point);
         let element = mesh.leaf_at(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
         let weighted = mesh.interpolate(element, point);

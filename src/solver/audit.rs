@@ -190,7 +190,7 @@ impl Place {
     fn receiver(&self, mesh: &Mesh, known: Spectrum) -> Receiver {
         Receiver {
             point: self.point,
-            normal: mesh.patches[self.patch as usize].normal,
+            normal: mesh.patch(self.patch).normal,
             irradiance: known.max_element(),
         }
     }

@@ -113,8 +113,7 @@ impl Neighbourhoods {
     /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
     fn divided(self, mesh: &Mesh, direct: &[Spectrum]) -> Self {
         let reflected = |vertex: u32| {
-            let reflectance =
-                mesh.patches[mesh.vertices[vertex as usize].patch as usize].reflectance;
+            let reflectance = mesh.patch(mesh.vertices[vertex as usize].patch).reflectance;
             f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
         };
         let all: f64 = self.lists.vertices.iter().map(|v| reflected(*v)).sum();
@@ -168,9 +167,9 @@ impl Lists {
 /// inside of a thin box has nothing of the light outside.
 fn key(mesh: &Mesh, vertex: u32, side: f64) -> (u64, u32) {
     let of = &mesh.vertices[vertex as usize];
-    let patch = &mesh.patches[of.patch as usize];
+    let patch = mesh.patch(of.patch);
     let face = facing(patch.normal);
-    let place = of.point / side;
+    let place = mesh.point(vertex) / side;
     let [x, y, z] = place.floor().as_i64vec3().to_array();
     let [x, y, z] = [x, y, z].map(|i| (i & 0xf_ffff) as u64);
     let slice = (place[face / 2].rem_euclid(1.0) * SLICES) as u32;
@@ -193,7 +192,7 @@ fn pooled(parts: Vec<Vec<u32>>, sees: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>
 
 /// Vertices on either side of the middle of the box around them, across where it is longest; `None` where all are in one place.
 fn halves(mesh: &Mesh, vertices: &[u32]) -> Option<[Vec<u32>; 2]> {
-    let point = |v: &u32| mesh.vertices[*v as usize].point;
+    let point = |v: &u32| mesh.point(*v);
     let (low, high) = vertices
         .iter()
         .map(point)

@@ -228,7 +228,7 @@ mod tests {
         );
         let (mut rays_down, mut rays_everywhere) = (0, 0);
         for patch in 0..mesh.patches.len() {
-            if mesh.patches[patch].exitance.max_element() > 0.0 {
+            if mesh.patches.at(patch).exitance.max_element() > 0.0 {
                 continue;
             }
             let source = solver.source_of(light, (patch, Sign::Positive), &sampler.thresholds);

@@ -60,7 +60,7 @@ pub(super) fn feelers(
                 mesh.interpolated(leaf, feeler.point, |v| light.irradiance[v as usize]);
             let receiver = Receiver {
                 point: feeler.point,
-                normal: mesh.patches[feeler.patch as usize].normal,
+                normal: mesh.patch(feeler.patch).normal,
                 irradiance: irradiance.max_element(),
             };
             (receiver, !number)
@@ -93,7 +93,7 @@ fn cast(
     let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
     let mut probes = Vec::new();
     for patch in mesh.patches.iter().filter(|p| !p.back) {
-        for place in places(patch) {
+        for place in places(&patch) {
             let way = place - centre;
             let distance = way.length();
             if source.normal().dot(way) <= 1e-4 * extent {
@@ -134,7 +134,7 @@ fn cast(
             ) {
                 feelers.push(Feeler {
                     patch,
-                    point: mesh.patches[patch as usize].position_at(at.0, at.1),
+                    point: mesh.patch(patch).position_at(at.0, at.1),
                     at,
                     width: probe.width * distance,
                     irradiance: Spectrum::ZERO,
@@ -179,13 +179,7 @@ fn patch_at(
 ) -> Option<(u32, (f64, f64))> {
     // Those of the region, or of the surface alone where that could not be tiled.
     let surfaces = [behind.region, behind.surface].into_iter();
-    let patches = surfaces.flat_map(|surface| {
-        let first = mesh.patches.partition_point(|p| p.surface < surface);
-        let of = mesh.patches[first..]
-            .iter()
-            .take_while(move |p| p.surface == surface);
-        (first as u32..).zip(of)
-    });
+    let patches = surfaces.flat_map(|surface| mesh.patches.of_surface(surface));
     patches
         .filter(|(_, patch)| patch.normal.dot(direction) < 0.0)
         .find_map(|(number, patch)| {

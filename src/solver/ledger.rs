@@ -34,10 +34,9 @@ impl Ledger {
             ..Self::default()
         };
         for (number, patch) in mesh.patches.iter().enumerate() {
-            let received: Power = patch
-                .vertices
-                .iter()
-                .map(|v| light.irradiance[*v as usize].as_dvec3() * mesh.weights[*v as usize])
+            let received: Power = mesh
+                .vertices_of(number as u32)
+                .map(|v| light.irradiance[v as usize].as_dvec3() * mesh.weights[v as usize])
                 .sum();
             ledger.emitted += patch.exitance.as_dvec3() * patch.area * square_metres;
             ledger.absorbed +=

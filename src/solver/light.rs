@@ -63,16 +63,15 @@ impl Light {
     pub fn unshot_radiosity(&self, mesh: &Mesh, vertex: u32, sign: Sign) -> Spectrum {
         let patch = mesh.vertices[vertex as usize].patch as usize;
         sign.part(self.exitance_unshot[patch])
-            + mesh.patches[patch].reflectance * sign.part(self.unshot[vertex as usize])
+            + mesh.patches.at(patch).reflectance * sign.part(self.unshot[vertex as usize])
     }
 
     /// Unshot power of one sign of a patch, in W times the square of the frame's scale, ≥ 0.
     pub fn unshot_power(&self, mesh: &Mesh, patch: usize, sign: Sign) -> Power {
-        let of = &mesh.patches[patch];
-        let received: Power = of
-            .vertices
-            .iter()
-            .map(|v| sign.part(self.unshot[*v as usize]).as_dvec3() * mesh.weights[*v as usize])
+        let of = mesh.patches.at(patch);
+        let received: Power = mesh
+            .vertices_of(patch as u32)
+            .map(|v| sign.part(self.unshot[v as usize]).as_dvec3() * mesh.weights[v as usize])
             .sum();
         let own = sign.part(self.exitance_unshot[patch]).as_dvec3() * of.area;
         own + of.reflectance.as_dvec3() * received
@@ -80,9 +79,9 @@ impl Light {
 
     /// Whether all that a patch has unshot of one sign is its own.
     pub(super) fn is_own(&self, mesh: &Mesh, patch: usize, sign: Sign) -> bool {
-        let vertices = &mesh.patches[patch].vertices;
-        let unshot = |v: &u32| sign.part(self.unshot[*v as usize]);
-        vertices.iter().all(|v| unshot(v) == Spectrum::ZERO)
+        let unshot = |v: u32| sign.part(self.unshot[v as usize]);
+        let mut vertices = mesh.vertices_of(patch as u32);
+        vertices.all(|v| unshot(v) == Spectrum::ZERO)
     }
 
     /// Whether emitters have anything of one sign to shoot.
@@ -117,8 +116,8 @@ impl Light {
     /// Marks everything of one sign of a patch as shot.
     pub fn take(&mut self, mesh: &Mesh, patch: usize, sign: Sign) {
         sign.take(&mut self.exitance_unshot[patch]);
-        for vertex in &mesh.patches[patch].vertices {
-            sign.take(&mut self.unshot[*vertex as usize]);
+        for vertex in mesh.vertices_of(patch as u32) {
+            sign.take(&mut self.unshot[vertex as usize]);
         }
     }
 }

@@ -100,7 +100,7 @@ impl Refinement<'_> {
         let of = &self.mesh.elements[element as usize];
         let weight = match self.options.quantity {
             Quantity::Irradiance => Spectrum::ONE,
-            Quantity::Radiosity => self.mesh.patches[of.patch as usize].reflectance,
+            Quantity::Radiosity => self.mesh.patch(of.patch).reflectance,
         };
         f64::from((difference * weight).max_element())
     }
@@ -196,8 +196,8 @@ impl Refinement<'_> {
             for (side, a, b) in of.sides() {
                 let key = (of.patch, self.middle(a, b));
                 if of.hanging[side] == NONE && seen.insert(key, ()).is_none() {
-                    let [pa, pb] = [a, b].map(|v| self.mesh.vertices[v as usize].point);
-                    let normal = self.mesh.patches[of.patch as usize].normal;
+                    let [pa, pb] = [a, b].map(|v| self.mesh.point(v));
+                    let normal = self.mesh.patch(of.patch).normal;
                     let irradiance = self.light.irradiance[a as usize]
                         .max(self.light.irradiance[b as usize])
                         .max_element();

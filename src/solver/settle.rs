@@ -93,7 +93,7 @@ impl Solver<'_> {
         let (mesh, light) = (&self.mesh, &self.light);
         let (mut arrived, mut sent) = (self.course.lost.all, self.emitted());
         for (vertex, weight) in mesh.weights.iter().enumerate() {
-            let patch = &mesh.patches[mesh.vertices[vertex].patch as usize];
+            let patch = mesh.patch(mesh.vertices[vertex].patch);
             let (irradiance, unshot) = (light.irradiance[vertex], light.unshot[vertex]);
             arrived += irradiance.as_dvec3() * *weight;
             sent += (patch.reflectance * (irradiance - unshot)).as_dvec3() * *weight;

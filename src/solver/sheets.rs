@@ -66,7 +66,7 @@ impl Side {
     }
 
     fn facing(&self, mesh: &Mesh) -> Facing {
-        let patch = &mesh.patches[self.patch as usize];
+        let patch = mesh.patch(self.patch);
         let (side, _) = patch.side_key(usize::from(self.number));
         ((facing(patch.normal), patch.back), side)
     }
@@ -84,7 +84,7 @@ impl Side {
 }
 
 fn sides(mesh: &Mesh, patch: u32) -> impl Iterator<Item = Side> {
-    let count = mesh.patches[patch as usize].corners().len() as u8;
+    let count = mesh.patch(patch).corners().len() as u8;
     (0..count).map(move |number| Side::new(mesh, patch, number))
 }
 
@@ -92,7 +92,7 @@ fn sides(mesh: &Mesh, patch: u32) -> impl Iterator<Item = Side> {
 fn nothing_between(mesh: &Mesh, visibility: &dyn Visibility, shared: Shared, reach: f64) -> bool {
     let Shared(a, b, middle) = shared;
     let ways = [a, b].map(|number| {
-        let patch = &mesh.patches[number as usize];
+        let patch = mesh.patch(number);
         let corners = patch.corners();
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
         (centre - middle, patch.normal)

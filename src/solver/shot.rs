@@ -149,7 +149,7 @@ impl<'a> Solver<'a> {
     pub(super) fn reached(&self, source: &Source) -> Vec<bool> {
         let extent = self.mesh.frame.extent();
         let patches = self.mesh.patches.iter();
-        patches.map(|p| faces(p, source, extent)).collect()
+        patches.map(|p| faces(&p, source, extent)).collect()
     }
 
     /// What a beam from a patch gives to each vertex of the patches that it reaches, and with how many rays: what an emitter sends is
@@ -162,7 +162,7 @@ impl<'a> Solver<'a> {
     ) -> (Vec<Gather>, u64) {
         let mesh = &self.mesh;
         let is_reached = |e: &u32| reached[mesh.elements[*e as usize].patch as usize];
-        let elements: Vec<u32> = if mesh.patches[shooter].exitance != Spectrum::ZERO {
+        let elements: Vec<u32> = if mesh.patches.at(shooter).exitance != Spectrum::ZERO {
             mesh.leaves().filter(is_reached).collect()
         } else {
             let roots = mesh.patches.iter().flat_map(|p| p.roots.clone());
@@ -182,7 +182,7 @@ impl<'a> Solver<'a> {
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
         // An emitter emits wherever it is.
-        let emits = |patch: u32| self.mesh.patches[patch as usize].exitance != Spectrum::ZERO;
+        let emits = |patch: u32| self.mesh.patch(patch).exitance != Spectrum::ZERO;
         let is_whole = self.patches_without_buried();
         let is_open = |patch, point| {
             is_whole[patch as usize] || emits(patch) || self.is_open(patch as usize, point)
@@ -218,7 +218,7 @@ impl<'a> Solver<'a> {
 
     /// Whether the nearest vertex to a point of a patch is open.
     fn is_open(&self, patch: usize, point: DVec3) -> bool {
-        let (u, v) = self.mesh.patches[patch].coordinates(point);
+        let (u, v) = self.mesh.patches.at(patch).coordinates(point);
         let weighted = self
             .mesh
             .interpolate(self.mesh.leaf_at(patch as u32, u, v), point);

@@ -24,7 +24,7 @@ impl Solver<'_> {
 
 /// A patch as a source with the unshot radiosity of [`cells_of`].
 pub(super) fn source_from(mesh: &Mesh, patch: usize, cells: &[Spectrum]) -> Source {
-    let of = &mesh.patches[patch];
+    let of = mesh.patches.at(patch);
     let levels = cells.len().ilog2() / 2;
     Source::new(of.corners(), of.normal, levels, cells)
 }
@@ -41,10 +41,9 @@ pub(super) fn cells_of(
     options: &Options,
     thresholds: &SourceThresholds,
 ) -> Vec<Spectrum> {
-    let peak = mesh.patches[patch]
-        .vertices
-        .iter()
-        .map(|v| light.unshot_radiosity(mesh, *v, sign).max_element())
+    let peak = mesh
+        .vertices_of(patch as u32)
+        .map(|v| light.unshot_radiosity(mesh, v, sign).max_element())
         .fold(0.0, f32::max);
     // No form factor exceeds 1, so a source this dim is never split where thresholds do not follow the local light.
     let unit = thresholds.scale.reference;
@@ -66,15 +65,15 @@ fn cells_on(
     if shooting == Shooting::Mean {
         return vec![mean_of(mesh, light, shooter).as_vec3(); count];
     }
-    let triangle = mesh.patches[shooter.0].is_triangle();
+    let triangle = mesh.patches.at(shooter.0).is_triangle();
     means_on(mesh, light, shooter, &cells_at(triangle, levels))
 }
 
 /// Mean unshot radiosity of a patch, buried parts included.
 fn mean_of(mesh: &Mesh, light: &Light, (patch, sign): (usize, Sign)) -> Power {
-    let of = &mesh.patches[patch];
-    let full = |v: &u32| light.unshot_radiosity(mesh, *v, sign).as_dvec3() * mesh.full_weight(*v);
-    of.vertices.iter().map(full).sum::<Power>() / of.area
+    let full = |v: u32| light.unshot_radiosity(mesh, v, sign).as_dvec3() * mesh.full_weight(v);
+    let vertices = mesh.vertices_of(patch as u32);
+    vertices.map(full).sum::<Power>() / mesh.patches.at(patch).area
 }
 
 /// Mean unshot radiosity of each of the cells that a patch is cut into; together they have the power of the patch.
@@ -88,7 +87,7 @@ pub(super) fn means_on(
     if cells.len() == 1 || light.is_own(mesh, patch, sign) {
         return vec![mean.as_vec3(); cells.len()];
     }
-    let of = &mesh.patches[patch];
+    let of = mesh.patches.at(patch);
     let radiosity = |v: u32| light.unshot_radiosity(mesh, v, sign);
     let mut means: Vec<Spectrum> = cells
         .par_iter()
@@ -97,7 +96,7 @@ pub(super) fn means_on(
         .collect();
     let weighted = means
         .iter()
-        .zip(areas(of, cells))
+        .zip(areas(&of, cells))
         .map(|(b, area)| b.as_dvec3() * area);
     let shot = weighted.sum::<Power>() / of.area;
     // Where the cells missed nearly all of it, all have the mean.
@@ -177,7 +176,7 @@ fn cell_mean(
     radiosity: &impl Fn(u32) -> Spectrum,
     finer: u32,
 ) -> Spectrum {
-    let triangle = mesh.patches[patch].is_triangle();
+    let triangle = mesh.patches.at(patch).is_triangle();
     let count = if triangle { 3.0 } else { 4.0 };
     let corners = &cell[..count as usize];
     let [u, v] = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / count);
@@ -195,7 +194,7 @@ fn cell_mean(
             .sum::<Spectrum>()
             * 0.25;
     }
-    let point = mesh.patches[patch].position_at(u, v);
+    let point = mesh.patches.at(patch).position_at(u, v);
     mesh.interpolated(leaf, point, radiosity)
 }
 

@@ -34,9 +34,9 @@ enum Cut {
 impl Tiling {
     pub fn new(mesh: &Mesh) -> Self {
         let cuts = cuts(mesh);
-        let of_patch = |(patch, cut): (&Patch, &Option<Cut>)| {
+        let of_patch = |(patch, cut): (Patch, &Option<Cut>)| {
             let cells = cut.map(|cut| cut.cells()).unwrap_or_default();
-            let tiles: Vec<Tile> = cells.iter().map(|cell| tile(patch, cell)).collect();
+            let tiles: Vec<Tile> = cells.iter().map(|cell| tile(&patch, cell)).collect();
             tiles
         };
         let tiles = mesh.patches.par_iter().zip(&cuts).flat_map_iter(of_patch);
@@ -126,9 +126,9 @@ pub(super) fn tile_count(mesh: &Mesh) -> usize {
 
 fn cuts(mesh: &Mesh) -> Vec<Option<Cut>> {
     let longest = SIZE * mesh.frame.extent();
-    let cut = |patch: &Patch| {
+    let cut = |patch: Patch| {
         let radiates = patch.reflectance != Spectrum::ZERO || patch.exitance != Spectrum::ZERO;
-        radiates.then(|| Cut::of(patch, longest))
+        radiates.then(|| Cut::of(&patch, longest))
     };
     mesh.patches.iter().map(cut).collect()
 }

@@ -158,16 +158,15 @@ impl<'a> Solver<'a> {
     }
 
     /// The next elements and small patches that a wave arrives at.
-    fn next_slice(&self, wave: &mut Wave) -> (Vec<u32>, Vec<&Patch>) {
+    fn next_slice(&self, wave: &mut Wave) -> (Vec<u32>, Vec<u32>) {
         let (mut elements, mut small, mut vertices) = (Vec::new(), Vec::new(), 0);
-        while let Some(patch) = self.mesh.patches.get(wave.next as usize)
-            && vertices < SLICE
-        {
-            if self.mesh.is_small(patch) {
-                small.push(patch);
-                vertices += patch.vertices.len();
+        while (wave.next as usize) < self.mesh.patches.len() && vertices < SLICE {
+            let patch = self.mesh.patch(wave.next);
+            if self.mesh.is_small(&patch) {
+                small.push(wave.next);
+                vertices += self.mesh.vertex_count(wave.next);
             } else {
-                let begins = self.begins(wave, patch);
+                let begins = self.begins(wave, &patch);
                 let most = (SLICE - vertices).div_ceil(PER_ELEMENT);
                 let some = begins.iter().skip(wave.within as usize).take(most);
                 let before = elements.len();
@@ -196,11 +195,11 @@ impl<'a> Solver<'a> {
     }
 
     /// Evaluates `beam` at some of the vertices of small patches, from which the others take it. Returns the number of rays.
-    fn shoot_at_groups(&self, beam: Beam, small: &[&Patch], arrived: &mut [Gather]) -> u64 {
+    fn shoot_at_groups(&self, beam: Beam, small: &[u32], arrived: &mut [Gather]) -> u64 {
         let mesh = &self.mesh;
         let receives = |v: &u32| mesh.receives(*v) && !mesh.buried[*v as usize];
-        let vertices = small.iter().flat_map(|patch| patch.vertices.iter());
-        let receiving: Vec<u32> = vertices.copied().filter(receives).collect();
+        let vertices = small.iter().flat_map(|patch| mesh.vertices_of(*patch));
+        let receiving: Vec<u32> = vertices.filter(receives).collect();
         let mut rays = 0;
         let receive = |nodes: &[u32]| {
             let receivers = nodes.iter().map(|v| receiver_at(mesh, &self.light, *v));

@@ -40,8 +40,8 @@ fn a_floor_cut_into_triangles_is_one_square() {
         let floor = Polygons::default().and(&whole_floor(8), turn, DVec3::new(3.0, 1.0, 0.5));
         let found = pieces(&floor.scene(true));
         assert_eq!(found.mesh.patches.len(), 1);
-        assert_eq!(found.mesh.patches[0].corners().len(), 4);
-        assert_eq!(found.mesh.patches[0].outline, [true; 4]);
+        assert_eq!(found.mesh.patches.at(0).corners().len(), 4);
+        assert_eq!(found.mesh.patches.at(0).outline, [true; 4]);
     }
 }
 

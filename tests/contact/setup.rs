@@ -265,7 +265,7 @@ fn assert_tiled(scene: &Scene, pieces: &Pieces, number: usize) {
         .iter()
         .filter(|p| !p.back && p.surface as usize == number);
     let outline: f64 = patches
-        .flat_map(|p| sides(p.corners()).zip(p.outline))
+        .flat_map(|p| Vec::from_iter(sides(p.corners()).zip(p.outline)))
         .filter(|s| s.1)
         .map(|s| s.0)
         .sum();

@@ -184,9 +184,8 @@ fn the_matrix_and_the_progressive_solver_agree() {
             .zip(&balances)
             .filter(|(row, _)| row.label.starts_with(&of));
         let by_matrix: f64 = of_zones.map(|(row, b)| b.irradiance.x * row.area).sum();
-        let on_it = |vertex: usize| {
-            mesh.patches[mesh.vertices[vertex].patch as usize].polygon as usize == polygon
-        };
+        let on_it =
+            |vertex: usize| mesh.patch(mesh.vertices[vertex].patch).polygon as usize == polygon;
         let by_solver: f64 = (0..mesh.vertices.len())
             .filter(|v| on_it(*v))
             .map(|v| mesh.weights[v] * f64::from(solution.light.irradiance[v].x))

@@ -123,14 +123,14 @@ fn the_inside_of_a_thin_box_stays_dark() {
     let solution = solved(&scene, clustered(draft()));
     let mesh = &solution.mesh;
     let mut outside: f32 = 0.0;
-    for (of, irradiance) in mesh.vertices.iter().zip(&solution.light.irradiance) {
-        let patch = &mesh.patches[of.patch as usize];
+    for (number, irradiance) in (0..).zip(&solution.light.irradiance) {
+        let patch = mesh.patch(mesh.vertices[number as usize].patch);
         if patch.surface as usize >= first && patch.back {
             assert_eq!(
                 irradiance.x,
                 0.0,
                 "inside, at {:?}",
-                mesh.frame.leave(of.point)
+                mesh.frame.leave(mesh.point(number))
             );
         } else {
             outside = outside.max(irradiance.x);
@@ -170,7 +170,7 @@ fn by_place(solution: &Solution) -> BTreeMap<([u64; 3], bool), Vec<f32>> {
     let mesh = &solution.mesh;
     let mut found: BTreeMap<_, Vec<f32>> = BTreeMap::new();
     for (vertex, of) in mesh.vertices.iter().enumerate() {
-        let patch = &mesh.patches[of.patch as usize];
+        let patch = mesh.patch(of.patch);
         let corner = patch
             .corners()
             .iter()

@@ -66,9 +66,9 @@ fn a_graded_mesh_integrates_polynomials_of_second_degree_exactly() {
         (0, over_triangle([a, b, c]) + over_triangle([a, c, d])),
         (1, over_triangle(triangle)),
     ] {
-        let vertices = mesh.patches[patch].vertices.iter();
+        let vertices = mesh.vertices_of(patch);
         let found: DVec3 = vertices
-            .map(|v| quadratic(mesh.frame.leave(mesh.position(*v))) * mesh.weights[*v as usize])
+            .map(|v| quadratic(mesh.frame.leave(mesh.position(v))) * mesh.weights[v as usize])
             .sum();
         let found = found / square;
         assert!(

@@ -4,12 +4,16 @@ use super::common::ENGINE;
 use super::common::reference::{Deviation, Sample, table};
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
+use radiosity::mesh::{Lattice, Vertex};
 use radiosity::radiometry::Spectrum;
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
 use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Run, Settings, SolveError};
+
+/// Bytes of a solution file before its payload.
+const HEADER: usize = 24;
 
 /// Lets some batches of work be done, then stops.
 struct Batches(usize);
@@ -268,13 +272,6 @@ fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
         let error = Solution::decode(&file(&spoilt)).expect_err(words);
         assert!(error.contains(words), "{error}");
     };
-    refused(&|s| s.mesh.patches[0].normal *= -1.0, "a patch");
-    refused(&|s| s.mesh.patches[0].area = f64::NAN, "a patch");
-    refused(&|s| s.mesh.patches[1].roots.end = 1 << 20, "a root");
-    refused(&|s| s.mesh.patches[1].vertices[0] = u32::MAX, "a vertex");
-    refused(&|s| s.mesh.vertices[3].patch = 1 << 20, "a vertex");
-    refused(&|s| s.mesh.vertices[3].lattice.u = u32::MAX, "a vertex");
-    refused(&|s| s.mesh.elements[0].corners[0] = 1 << 30, "a corner");
     refused(&|s| s.mesh.elements[1].children = 0, "the children");
     refused(&|s| s.mesh.buried.truncate(1), "buried");
     refused(&|s| s.light.irradiance.truncate(1), "does not fit the mesh");
@@ -286,4 +283,52 @@ fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
     refused(&|s| scene(s, &|of| of.vertices.truncate(2)), "a surface");
     refused(&|s| scene(s, &|of| of.surfaces.truncate(1)), "no surface");
     refused(&|s| scene(s, &|of| of.vertices[0].y = f64::NAN), "nowhere");
+}
+
+/// What a file says of a patch must be what follows from its corners, and from the elements and vertices that there are; and they must be
+/// of a patch that there is.
+#[test]
+fn a_file_whose_mesh_is_not_sound_is_refused() {
+    let how = settings(draft(), EngineChoice::Obvhs, 1);
+    let run = Run::new(bundled("geometry"), how).expect("can be solved");
+    let whole = run.finish();
+    let written = file(&whole);
+    let payload = &written[HEADER..];
+    assert!(Solution::from_payload(payload).is_ok());
+    let refused = |known: Vec<u8>, instead: Vec<u8>, words: &str| {
+        let mut places = payload.windows(known.len());
+        let at = places.position(|bytes| bytes == known).expect("is there");
+        let rest = &payload[at + known.len()..];
+        let spoilt = [&payload[..at], &instead, rest].concat();
+        let error = Solution::from_payload(&spoilt).expect_err(words);
+        assert!(error.contains(words), "{error}");
+    };
+    let of = whole.mesh.patch(1);
+    let (normal, area) = (of.normal, of.area);
+    refused(encoded((normal, area)), encoded((-normal, area)), "a patch");
+    refused(
+        encoded((normal, area)),
+        encoded((normal, f64::NAN)),
+        "a patch",
+    );
+    let begin = |end: u32| encoded((of.exitance, of.roots.start, end, of.grid));
+    refused(begin(of.roots.end), begin(1 << 20), "a root");
+    refused(begin(of.roots.end), begin(of.roots.end + 1), "a grid");
+    let mut vertices: Vec<u32> = whole.mesh.vertices_of(1).collect();
+    let known = encoded((of.grid, &vertices));
+    vertices[0] = u32::MAX;
+    refused(known, encoded((of.grid, &vertices)), "a vertex of a patch");
+    let Vertex { patch, lattice, .. } = whole.mesh.vertices[3];
+    let vertex = |patch, lattice| encoded((patch, lattice, whole.mesh.point(3)));
+    let known = vertex(patch, lattice);
+    refused(known.clone(), vertex(1 << 20, lattice), "a vertex");
+    refused(known, vertex(patch, Lattice::new(u32::MAX, 0)), "a vertex");
+    let mut element = whole.mesh.elements[0];
+    let known = encoded(element);
+    element.corners[0] = 1 << 30;
+    refused(known, encoded(element), "a corner");
+}
+
+fn encoded(of: impl serde::Serialize) -> Vec<u8> {
+    postcard::to_stdvec(&of).expect("can be encoded")
 }

@@ -13,11 +13,9 @@ const STEPS: [f64; 4] = [0.13, 0.37, 0.61, 0.83];
 fn samples(solution: &Solution) -> Vec<Sample> {
     let prober = Prober::new(solution);
     let places = solution.mesh.patches.iter().flat_map(|patch| {
-        STEPS.iter().flat_map(move |u| {
-            STEPS
-                .iter()
-                .map(move |v| (patch.position_at(*u, *v), patch.normal))
-        })
+        let at = |u: f64, v: f64| (patch.position_at(u, v), patch.normal);
+        let steps = STEPS.iter().flat_map(|u| STEPS.map(|v| at(*u, v)));
+        Vec::from_iter(steps)
     });
     let sample = |(point, normal): (DVec3, DVec3)| {
         let point = solution.mesh.frame.leave(point);

@@ -1,0 +1,166 @@
+//! A mesh as files have it: with what follows from the rest written out. What a file says of that must be so.
+
+use super::patches::{Known, MOST_ALONG};
+use super::restore::check;
+use super::{Element, Lattice, Mesh, MeshLimits, NONE, Patch, Patches, Vertex};
+use crate::geometry::Frame;
+use crate::radiometry::Spectrum;
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
+use std::ops::Range;
+
+/// A mesh that was read and not looked at yet.
+#[derive(Deserialize)]
+pub struct StoredMesh {
+    frame: Frame,
+    patches: Vec<StoredPatch>,
+    elements: Vec<Element>,
+    vertices: Vec<StoredVertex>,
+    buried: Vec<bool>,
+    limits: MeshLimits,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StoredPatch {
+    surface: u32,
+    polygon: u32,
+    corners: [DVec3; 4],
+    corner_count: u8,
+    outline: [bool; 4],
+    back: bool,
+    normal: DVec3,
+    area: f64,
+    reflectance: Spectrum,
+    exitance: Spectrum,
+    roots: Range<u32>,
+    grid: (u32, u32),
+    vertices: Vec<u32>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StoredVertex {
+    patch: u32,
+    lattice: Lattice,
+    point: DVec3,
+}
+
+impl Serialize for Mesh {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let patch = |(number, of): (u32, Patch)| StoredPatch::new(of, self.vertices_of(number));
+        let vertex = |(number, of): (u32, &Vertex)| StoredVertex {
+            patch: of.patch,
+            lattice: of.lattice,
+            point: self.point(number),
+        };
+        let mut mesh = serializer.serialize_struct("Mesh", 6)?;
+        mesh.serialize_field("frame", &self.frame)?;
+        mesh.serialize_field("patches", &List((0..).zip(self.patches.iter()).map(patch)))?;
+        mesh.serialize_field("elements", &self.elements)?;
+        mesh.serialize_field("vertices", &List((0..).zip(&self.vertices).map(vertex)))?;
+        mesh.serialize_field("buried", &self.buried)?;
+        mesh.serialize_field("limits", &self.limits)?;
+        mesh.end()
+    }
+}
+
+/// What an iterator gives, as a list.
+struct List<I>(I);
+
+impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.clone())
+    }
+}
+
+impl StoredMesh {
+    /// The mesh, if what it says is sound, with what is not stored. Errors say what does not fit.
+    pub fn restored(self) -> Result<Mesh, String> {
+        let (mut patches, mut known) = (Patches::default(), Known::default());
+        let mut later = FxHashMap::default();
+        for (number, of) in (0..).zip(self.patches) {
+            let within = |v: &u32| (*v as usize) < self.vertices.len();
+            check(of.vertices.iter().all(within), "a vertex of a patch")?;
+            let (patch, vertices) = of.patch(&self.elements)?;
+            let first = patch.first_vertices().len();
+            if vertices.len() > first {
+                later.insert(number, vertices[first..].to_vec());
+            }
+            patches.push(&patch, &mut known);
+        }
+        let vertex = |of: StoredVertex| Vertex {
+            patch: of.patch,
+            lattice: of.lattice,
+            maker: NONE,
+        };
+        let mut mesh = Mesh {
+            patches,
+            elements: self.elements,
+            vertices: self.vertices.into_iter().map(vertex).collect(),
+            buried: self.buried,
+            later,
+            ..Mesh::empty(self.frame, self.limits)
+        };
+        mesh.restore()?;
+        Ok(mesh)
+    }
+}
+
+impl StoredPatch {
+    fn new(of: Patch, vertices: impl Iterator<Item = u32>) -> Self {
+        let corners = of.corners();
+        let at = |number: usize| *corners.get(number).unwrap_or(&corners[0]);
+        Self {
+            surface: of.surface,
+            polygon: of.polygon,
+            corners: [0, 1, 2, 3].map(at),
+            corner_count: corners.len() as u8,
+            outline: of.outline,
+            back: of.back,
+            normal: of.normal,
+            area: of.area,
+            reflectance: of.reflectance,
+            exitance: of.exitance,
+            roots: of.roots.clone(),
+            grid: of.grid,
+            vertices: vertices.collect(),
+        }
+    }
+
+    /// The patch and its vertices, if its parts fit each other and those of the `elements` that it begins with.
+    fn patch(self, elements: &[Element]) -> Result<(Patch, Vec<u32>), String> {
+        check(matches!(self.corner_count, 3 | 4), "a patch")?;
+        let corners = &self.corners[..usize::from(self.corner_count)];
+        let patch = Patch {
+            outline: self.outline,
+            reflectance: self.reflectance,
+            exitance: self.exitance,
+            roots: self.roots,
+            grid: self.grid,
+            first_vertex: self.vertices.first().copied().unwrap_or(0),
+            ..Patch::new(self.surface, self.polygon, corners, self.back)
+        };
+        let within = |x: f32| (0.0..=1.0).contains(&x);
+        let is_sound = patch.corners == self.corners
+            && patch.area == self.area
+            && patch.normal == self.normal
+            && patch.area > 0.0
+            && patch.reflectance.to_array().into_iter().all(within)
+            && patch.exitance.is_finite();
+        check(is_sound, "a patch")?;
+        let Range { start, end } = patch.roots;
+        check(
+            start <= end && end as usize <= elements.len(),
+            "a root element",
+        )?;
+        let (columns, rows) = patch.grid;
+        let most = columns.max(rows);
+        let is_full = most <= MOST_ALONG && columns * rows == end - start && end > start;
+        check(is_full, "a grid")?;
+        let first = patch.first_vertices();
+        let is_known = self.vertices.starts_with(&Vec::from_iter(first));
+        check(is_known, "a vertex of a patch")?;
+        Ok((patch, self.vertices))
+    }
+}
