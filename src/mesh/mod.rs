@@ -18,6 +18,7 @@ mod patch;
 mod patches;
 mod refine;
 mod restore;
+mod sides;
 mod stored;
 mod weld;
 
@@ -27,6 +28,7 @@ pub use element::{Element, NONE};
 pub use lattice::{Lattice, UNIT};
 pub use patch::{Patch, SideKey};
 pub use patches::Patches;
+pub use sides::{Side, Sides};
 pub use stored::StoredMesh;
 
 use crate::geometry::Frame;

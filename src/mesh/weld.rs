@@ -5,7 +5,8 @@
 //! it that belong together, with the mean of their normals by angle. Small patches receive at their corners only. So curved
 //! surfaces have no facets, and light is asked for once where it used to be asked for by each patch.
 
-use super::{Lattice, Mesh, NONE, Patch, SideKey, UNIT};
+use super::sides::{Side, Sides};
+use super::{Lattice, Mesh, NONE, Patch, UNIT};
 use crate::geometry::Sets;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -34,9 +35,6 @@ pub(super) struct Weld {
     followed: Vec<u32>,
 }
 
-/// A side of a patch, the patch, its vertices at the ends.
-type Side = (SideKey, u32, u32, u32);
-
 impl Mesh {
     /// Welds what makes one surface, or takes it apart.
     pub fn weld_if(&mut self, welded: bool) {
@@ -49,11 +47,14 @@ impl Mesh {
     }
 
     fn weld(&mut self) {
-        let corners = self.corner_vertices();
         let mut sites = Sets::new(self.vertices.len());
-        for [a, b] in self.smooth_ends(&corners) {
-            sites.join(a, b);
+        let sides = Sides::new(self, |patch, side| patch.side_key(side).0);
+        for sides in sides.list.chunk_by(|a, b| sides.are_one(a, b)) {
+            for [a, b] in self.smooth_ends(sides) {
+                sites.join(a, b);
+            }
         }
+        drop(sides);
         let mut weld = Weld {
             leader: (0..self.vertices.len() as u32).collect(),
             ..Weld::default()
@@ -125,49 +126,10 @@ impl Mesh {
         }
     }
 
-    /// The vertices in the corners of each patch.
-    fn corner_vertices(&self) -> Vec<[u32; 4]> {
-        let corners = |(number, patch): (usize, Patch)| {
-            let root = &self.elements[patch.roots.start as usize];
-            if patch.roots.len() == 1 {
-                return root.corners;
-            }
-            let at = |(u, v)| {
-                self.vertex_at(number as u32, Lattice::new(u, v))
-                    .unwrap_or(NONE)
-            };
-            [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)].map(at)
-        };
-        self.patches.par_iter().enumerate().map(corners).collect()
-    }
-
-    /// The corners that two patches have at either end of a side along which they belong together.
-    fn smooth_ends(&self, corners: &[[u32; 4]]) -> Vec<[u32; 2]> {
-        let mut sides: Vec<Side> = (0..self.patches.len() as u32)
-            .into_par_iter()
-            .flat_map_iter(|number| self.sides_of(number, &corners[number as usize]))
-            .collect();
-        sides.par_sort_unstable();
-        let shared = sides.chunk_by(|a, b| a.0 == b.0);
-        shared.flat_map(|sides| self.ends(sides)).collect()
-    }
-
-    /// The sides of a patch, with the vertices at their ends.
-    fn sides_of(&self, number: u32, corners: &[u32; 4]) -> impl Iterator<Item = Side> {
-        let patch = self.patch(number);
-        let count = patch.corners().len();
-        (0..count).map(move |side| {
-            let (key, turned) = patch.side_key(side);
-            let [a, b] = [corners[side], corners[(side + 1) % count]];
-            let (a, b) = if turned { (b, a) } else { (a, b) };
-            (key, number, a, b)
-        })
-    }
-
-    /// Of all patches on one side, the ends of those of two surfaces that belong together: both fronts, or both backs. The side between two
-    /// pieces of one surface is a line of contact: something stands there.
-    fn ends(&self, sides: &[Side]) -> Vec<[u32; 2]> {
-        let patch = |side: &Side| self.patch(side.1);
+    /// Of all patches on one side, the corners at either end of those of two surfaces that belong together: both fronts, or both backs. The
+    /// side between two pieces of one surface is a line of contact: something stands there.
+    fn smooth_ends(&self, sides: &[Side]) -> Vec<[u32; 2]> {
+        let patch = |side: &Side| self.patch(side.patch);
         let mut surfaces: Vec<u32> = sides.iter().map(|side| patch(side).surface).collect();
         surfaces.dedup();
         if surfaces.len() != 2 {
@@ -179,11 +141,32 @@ impl Mesh {
                 if patch(a).surface != patch(b).surface
                     && self.belong_together(&patch(a), &patch(b))
                 {
-                    ends.extend([[a.2, b.2], [a.3, b.3]]);
+                    let ([a, c], [b, d]) = (self.ends(a), self.ends(b));
+                    ends.extend([[a, b], [c, d]]);
                 }
             }
         }
         ends
+    }
+
+    /// The vertices at the ends of a side, in the same order from every patch that has it.
+    fn ends(&self, side: &Side) -> [u32; 2] {
+        let patch = self.patch(side.patch);
+        let (_, turned) = patch.side_key(side.number());
+        let count = patch.corners().len();
+        let ends = [side.number(), (side.number() + 1) % count];
+        let [a, b] = ends.map(|corner| self.corner_vertex(&patch, side.patch, corner));
+        if turned { [b, a] } else { [a, b] }
+    }
+
+    /// The vertex in a corner of a patch.
+    fn corner_vertex(&self, patch: &Patch, number: u32, corner: usize) -> u32 {
+        if patch.roots.len() == 1 {
+            return self.elements[patch.roots.start as usize].corners[corner];
+        }
+        let (u, v) = [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)][corner];
+        let vertex = self.vertex_at(number, Lattice::new(u, v));
+        vertex.unwrap_or(NONE)
     }
 
     fn belong_together(&self, a: &Patch, b: &Patch) -> bool {

@@ -3,32 +3,30 @@
 //! A wall goes on behind the ceiling that meets it, often as the same surface: what falls on it below says nothing of the cavity above.
 
 use crate::geometry::{Sets, facing};
-use crate::mesh::{Mesh, SideKey};
+use crate::mesh::{Mesh, Patch, Side, SideKey, Sides};
 use crate::visibility::{Fans, Visibility};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use rustc_hash::FxBuildHasher;
-use std::hash::BuildHasher;
 
 /// Where two patches look at one another: this part of the way from the side that they share to their centres.
 const NEARNESS: f64 = 0.25;
 
 /// By patch, the first of its own sheet. No patch looks for its neighbour further than `reach` from the side between them.
 pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Vec<u32> {
-    let mut by_side: Vec<Side> = (0..mesh.patches.len() as u32)
-        .into_par_iter()
-        .flat_map_iter(|number| sides(mesh, number))
-        .collect();
-    by_side.par_sort_unstable_by(|a, b| {
-        let digests = a.digest.cmp(&b.digest);
-        digests.then_with(|| (a.facing(mesh), a.patch).cmp(&(b.facing(mesh), b.patch)))
-    });
-    let shared: Vec<Shared> = by_side
+    let sides = Sides::new(mesh, facing_side);
+    let middle = |side: &Side| {
+        let (_, ends) = sides.key(side);
+        let [a, b] = ends.map(|end| DVec3::from_array(end.map(f64::from_bits)));
+        0.5 * (a + b)
+    };
+    let shared: Vec<Shared> = sides
+        .list
         .par_windows(2)
-        .filter(|pair| pair[0].is_with(&pair[1], mesh))
-        .map(|pair| Shared(pair[0].patch, pair[1].patch, pair[0].middle(mesh)))
+        .filter(|pair| sides.are_one(&pair[0], &pair[1]))
+        .map(|pair| Shared(pair[0].patch, pair[1].patch, middle(&pair[0])))
         .filter(|shared| nothing_between(mesh, visibility, *shared, reach))
         .collect();
+    drop(sides);
     let mut sheets = Sets::new(mesh.patches.len());
     for Shared(a, b, _) in shared {
         sheets.join(a, b);
@@ -43,49 +41,9 @@ pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Ve
 struct Shared(u32, u32, DVec3);
 
 /// The way that a patch faces, fronts apart from backs, and one of its sides.
-type Facing = ((usize, bool), SideKey);
-
-/// A side of a patch. There are millions, so what tells them apart is made anew where their digests do not.
-#[derive(Clone, Copy)]
-struct Side {
-    /// Of its [`Facing`].
-    digest: u64,
-    patch: u32,
-    number: u8,
-}
-
-impl Side {
-    fn new(mesh: &Mesh, patch: u32, number: u8) -> Self {
-        let mut side = Self {
-            digest: 0,
-            patch,
-            number,
-        };
-        side.digest = FxBuildHasher.hash_one(side.facing(mesh));
-        side
-    }
-
-    fn facing(&self, mesh: &Mesh) -> Facing {
-        let patch = mesh.patch(self.patch);
-        let (side, _) = patch.side_key(usize::from(self.number));
-        ((facing(patch.normal), patch.back), side)
-    }
-
-    /// Whether both are one side, of patches that face alike.
-    fn is_with(&self, other: &Self, mesh: &Mesh) -> bool {
-        self.digest == other.digest && self.facing(mesh) == other.facing(mesh)
-    }
-
-    fn middle(&self, mesh: &Mesh) -> DVec3 {
-        let (_, side) = self.facing(mesh);
-        let [a, b] = side.map(|end| DVec3::from_array(end.map(f64::from_bits)));
-        0.5 * (a + b)
-    }
-}
-
-fn sides(mesh: &Mesh, patch: u32) -> impl Iterator<Item = Side> {
-    let count = mesh.patch(patch).corners().len() as u8;
-    (0..count).map(move |number| Side::new(mesh, patch, number))
+fn facing_side(patch: &Patch, side: usize) -> ((usize, bool), SideKey) {
+    let facing = (facing(patch.normal), patch.back);
+    (facing, patch.side_key(side).0)
 }
 
 /// Whether points a little way in from the middle of the side that two patches share, and as much above, see one another.
