@@ -1,9 +1,8 @@
 //! Which vertices are buried: those from which every ray ends on a side that does not radiate.
 
-use super::escape::Backing;
+use super::behind::Behind;
 use crate::geometry::{cosine_direction, jitter, lift};
 use crate::mesh::Mesh;
-use crate::scene::Sides;
 use crate::visibility::{Ray, Visibility};
 use rayon::prelude::*;
 
@@ -14,11 +13,11 @@ const RAYS: u32 = 16;
 pub(super) fn buried(
     mesh: &Mesh,
     visibility: &dyn Visibility,
-    backing: &[Backing],
+    backing: &dyn Behind,
     first: u32,
 ) -> Vec<bool> {
     let count = mesh.vertices.len() - first as usize;
-    if backing.iter().all(|b| b.sides == Sides::Both) {
+    if backing.is_two_sided() {
         return vec![false; count];
     }
     let receiving: Vec<u32> = (first..mesh.vertices.len() as u32)
@@ -56,7 +55,7 @@ pub(super) fn buried(
 fn sees_dark(
     mesh: &Mesh,
     visibility: &dyn Visibility,
-    backing: &[Backing],
+    backing: &dyn Behind,
     vertices: &[u32],
     rays: std::ops::Range<u32>,
 ) -> Vec<bool> {

@@ -1,5 +1,6 @@
 //! What leaves the scene: cosine-distributed rays from the shooter that meet nothing, or a side that does not radiate.
 
+use super::behind::{Backing, Behind};
 use crate::geometry::{cosine_direction, jitter, lift};
 use crate::radiometry::{Power, Spectrum};
 use crate::scene::Sides;
@@ -9,22 +10,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::{AddAssign, Mul};
 
-/// What stands behind a triangle of the visibility scene.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Backing {
-    /// Unit normal of the front.
-    pub normal: DVec3,
-    /// The sides that radiate.
-    pub sides: Sides,
-    /// Index into `Scene::surfaces`.
-    pub surface: u32,
-    /// The first surface of those that are meshed as one with it.
-    pub region: u32,
-}
-
 /// Whether a ray has ended on a side that does not radiate.
-pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &[Backing]) -> bool {
-    let Backing { normal, sides, .. } = backing[hit.triangle as usize];
+pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &dyn Behind) -> bool {
+    let Backing { normal, sides, .. } = backing.at(hit.triangle);
     sides == Sides::Front && normal.dot(ray.direction.as_dvec3()) > 0.0
 }
 
@@ -60,7 +48,7 @@ impl Mul<f64> for Lost {
 pub(super) fn escaped(
     draws: Vec<Draw>,
     visibility: &dyn Visibility,
-    backing: &[Backing],
+    backing: &dyn Behind,
     is_open: impl Fn(u32, DVec3) -> bool + Sync,
     extent: f64,
 ) -> Lost {

@@ -5,7 +5,8 @@
 //! interpolant does not know of it is split. A ray and an evaluation for each surface and shot: as much as another vertex
 //! a surface.
 
-use super::escape::{Backing, is_dark};
+use super::behind::Behind;
+use super::escape::is_dark;
 use super::light::Light;
 use super::shoot::{Beam, Shooter, evaluate};
 use crate::form_factor::{Receiver, Source};
@@ -40,7 +41,7 @@ pub(super) struct Feeler {
 pub(super) fn feelers(
     mesh: &Mesh,
     light: &Light,
-    backing: &[Backing],
+    backing: &dyn Behind,
     beam: Beam,
     reached: &[bool],
 ) -> (Vec<Feeler>, u64) {
@@ -86,7 +87,7 @@ fn cast(
     mesh: &Mesh,
     source: &Source,
     visibility: &dyn Visibility,
-    backing: &[Backing],
+    backing: &dyn Behind,
 ) -> Vec<Feeler> {
     let extent = mesh.frame.extent();
     let corners = source.corners();
@@ -126,12 +127,9 @@ fn cast(
                 probe.travelled = distance + 2e-5 * extent;
                 probe.ray.origin = (centre + probe.direction * probe.travelled).as_vec3();
                 through.push(probe);
-            } else if let Some((patch, at)) = patch_at(
-                mesh,
-                &backing[hit.triangle as usize],
-                point,
-                probe.direction,
-            ) {
+            } else if let Some((patch, at)) =
+                patch_at(mesh, (backing, hit.triangle), point, probe.direction)
+            {
                 feelers.push(Feeler {
                     patch,
                     point: mesh.patch(patch).position_at(at.0, at.1),
@@ -173,12 +171,13 @@ fn places(patch: &Patch) -> impl Iterator<Item = DVec3> + '_ {
 /// The patch behind a triangle that has a point on the side which `direction` meets, and the coordinates there.
 fn patch_at(
     mesh: &Mesh,
-    behind: &Backing,
+    (backing, triangle): (&dyn Behind, u32),
     point: DVec3,
     direction: DVec3,
 ) -> Option<(u32, (f64, f64))> {
     // Those of the region, or of the surface alone where that could not be tiled.
-    let surfaces = [behind.region, behind.surface].into_iter();
+    let surface = backing.at(triangle).surface;
+    let surfaces = [backing.region(surface), surface].into_iter();
     let patches = surfaces.flat_map(|surface| mesh.patches.of_surface(surface));
     patches
         .filter(|(_, patch)| patch.normal.dot(direction) < 0.0)

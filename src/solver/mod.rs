@@ -4,6 +4,7 @@
 //! `form_factor` and the visibility trait.
 
 mod audit;
+mod behind;
 mod bounce;
 mod burial;
 mod course;

@@ -1,7 +1,8 @@
 //! The light of a solved mesh at points that lie on no surface: a plane of work, a meter on a stand.
 
 use super::audit::FINER;
-use super::escape::{Backing, is_dark};
+use super::behind::Backing;
+use super::escape::is_dark;
 use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::{Shooter, evaluate};
@@ -55,7 +56,6 @@ impl<'a> OpenLight<'a> {
                     false => Sides::Front,
                 },
                 surface: patch.surface,
-                region: patch.surface,
             };
             std::iter::repeat_n(backing, patch.corners().len() - 2)
         });

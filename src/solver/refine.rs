@@ -1,7 +1,7 @@
 //! The three tests, in order of cost, on the elements that a shot has reached.
 
+use super::behind::Behind;
 use super::burial::buried;
-use super::escape::Backing;
 use super::feelers::Feeler;
 use super::light::Light;
 use super::options::{Options, Quantity};
@@ -21,7 +21,7 @@ pub(super) struct Refinement<'a> {
     pub arrived: &'a mut Vec<Gather>,
     pub beam: Beam<'a>,
     pub options: &'a Options,
-    pub backing: &'a [Backing],
+    pub backing: &'a dyn Behind,
     pub feelers: &'a [Feeler],
     /// Elements that may be split.
     pub room: usize,

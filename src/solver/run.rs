@@ -1,10 +1,10 @@
 //! The loop: select, shoot, refine, account, stop.
 
 use super::audit::Audit;
+use super::behind::Surfaces;
 use super::bounce::Neighbourhoods;
 use super::burial::buried;
 use super::course::{Bounce, Course, Stage};
-use super::escape::Backing;
 use super::ledger::Ledger;
 use super::light::{Light, Sign};
 use super::observer::{Control, Observer, Progress};
@@ -15,12 +15,10 @@ use super::shoot::Shooter;
 use super::tiling::Tiling;
 use super::volley::{side_by_side, strongest};
 use super::wave::EARLY;
-use crate::geometry::polygon::vector_area;
-use crate::mesh::{Mesh, regions};
+use crate::mesh::Mesh;
 use crate::radiometry::Power;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
-use glam::DVec3;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -31,7 +29,7 @@ pub struct Solver<'a> {
     pub(super) course: Course,
     pub(super) visibility: &'a dyn Visibility,
     pub(super) options: Options,
-    pub(super) backing: Vec<Backing>,
+    pub(super) behind: Surfaces<'a>,
     /// The tiles of a scene of many patches, while they do not shoot.
     pub(super) tiling: Option<Tiling>,
     /// … and while they do.
@@ -64,14 +62,14 @@ pub fn occluders(scene: &Scene, mesh: &Mesh) -> Triangles {
 impl<'a> Solver<'a> {
     /// Prepares a solve of `scene` on its coarsest `mesh`; `visibility` answers for the scene's [`occluders`].
     pub fn new(
-        scene: &Scene,
+        scene: &'a Scene,
         mut mesh: Mesh,
         visibility: &'a dyn Visibility,
         options: Options,
     ) -> Self {
         mesh.weld_if(options.clusters(&mesh));
-        let backing = backing(scene, &mesh);
-        mesh.finish_topology(0, &buried(&mesh, visibility, &backing, 0));
+        let behind = Surfaces::new(scene, &mesh);
+        mesh.finish_topology(0, &buried(&mesh, visibility, &behind, 0));
         let light = Light::new(&mesh);
         let state = (mesh, light, Course::default());
         Self::resume(scene, state, visibility, options, Duration::ZERO)
@@ -79,7 +77,7 @@ impl<'a> Solver<'a> {
 
     /// Takes up a solve of `scene` where an [`Outcome`] has left it; `spent` is what counts against the time limit already.
     pub fn resume(
-        scene: &Scene,
+        scene: &'a Scene,
         (mut mesh, light, course): (Mesh, Light, Course),
         visibility: &'a dyn Visibility,
         options: Options,
@@ -93,7 +91,7 @@ impl<'a> Solver<'a> {
             .map(|p| f64::from(p.exitance.max_element()) * p.area)
             .sum();
         Self {
-            backing: backing(scene, &mesh),
+            behind: Surfaces::new(scene, &mesh),
             tiling: None,
             radiated: None,
             neighbourhoods: None,
@@ -276,24 +274,6 @@ impl<'a> Solver<'a> {
     fn elapsed(&self) -> Duration {
         self.spent + self.started.elapsed()
     }
-}
-
-/// What stands behind each triangle of the scene's [`occluders`].
-fn backing(scene: &Scene, mesh: &Mesh) -> Vec<Backing> {
-    let mut backing = Vec::new();
-    let regions = regions(scene, &mesh.frame);
-    for (number, surface) in (0..).zip(&scene.surfaces) {
-        let at = |v: &u32| mesh.frame.enter(scene.vertices[*v as usize]);
-        let corners: Vec<DVec3> = surface.corners.indices().iter().map(at).collect();
-        let side = Backing {
-            normal: vector_area(&corners).normalize_or(DVec3::Z),
-            sides: surface.sides,
-            surface: number,
-            region: regions.first(number),
-        };
-        backing.extend(std::iter::repeat_n(side, corners.len() - 2));
-    }
-    backing
 }
 
 /// What a stage counts as.

@@ -47,7 +47,7 @@ impl<'a> Solver<'a> {
         let elements = self.mesh.leaves();
         let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
         shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
-        let (found, rays) = feelers(&self.mesh, &self.light, &self.backing, beam, &reached);
+        let (found, rays) = feelers(&self.mesh, &self.light, &self.behind, beam, &reached);
         self.course.rays += rays;
         shot.feelers = found;
         shot.made = Some(shooting);
@@ -89,7 +89,7 @@ impl<'a> Solver<'a> {
             light: &mut self.light,
             arrived: &mut shot.arrived,
             options: &self.options,
-            backing: &self.backing,
+            backing: &self.behind,
             feelers: &shot.feelers,
             rays: 0,
         };
@@ -203,7 +203,7 @@ impl<'a> Solver<'a> {
             Shooter::All { tiling, .. } => draw(tiling.parts(), rays, seed),
         };
         let extent = self.mesh.frame.extent();
-        escaped(draws, self.visibility, &self.backing, is_open, extent)
+        escaped(draws, self.visibility, &self.behind, is_open, extent)
     }
 
     /// Of each patch, whether all its vertices are open.
