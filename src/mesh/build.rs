@@ -30,6 +30,7 @@ impl Mesh {
         let frame = scene.frame();
         let regions = contact::regions(scene, &frame);
         let pieces = contact::pieces(scene, &frame, &regions);
+        drop(regions);
         let mut mesh = Self {
             unsplit_contacts: pieces.unsplit,
             ..Self::empty(frame, limits)
@@ -60,6 +61,7 @@ impl Mesh {
         }
         drop(known);
         mesh.patches.shrink();
+        mesh.add_roots();
         mesh.split_to_initial_size();
         mesh.finish_topology(0, &[]);
         mesh
@@ -90,25 +92,37 @@ impl Mesh {
         &self.limits
     }
 
+    /// Adds a patch; its elements and vertices are to follow those of the one before.
     fn add_patch(&mut self, mut patch: Patch, shortest: f64, known: &mut Known) {
-        let id = self.patches.len() as u32;
         patch.grid = grid_of(&patch, shortest);
         let (columns, rows) = patch.grid;
-        let first = self.elements.len() as u32;
-        patch.roots = first..first + columns * rows;
-        patch.first_vertex = self.vertices.len() as u32;
+        let (element, vertex) = self.first_after();
+        patch.roots = element..element + columns * rows;
+        patch.first_vertex = vertex;
         self.patches.push(&patch, known);
-        self.touched.push(true);
-        if patch.is_triangle() {
-            self.add_root(
-                id,
-                &[
-                    Lattice::new(0, 0),
-                    Lattice::new(UNIT, 0),
-                    Lattice::new(0, UNIT),
-                ],
-            );
-        } else {
+    }
+
+    /// The elements and vertices of the coarsest grids of all patches so far.
+    fn first_after(&self) -> (u32, u32) {
+        let last = self.patches.iter().next_back();
+        last.map_or((0, 0), |last| (last.roots.end, last.first_vertices().end))
+    }
+
+    /// Makes the coarsest grids of all patches, with room for as much again: what is not written to takes no memory, but growing
+    /// into a new place takes that of the old one too.
+    fn add_roots(&mut self) {
+        let (elements, vertices) = self.first_after();
+        self.elements.reserve(2 * elements as usize);
+        self.vertices.reserve(2 * vertices as usize);
+        self.touched = vec![true; self.patches.len()];
+        for id in 0..self.patches.len() as u32 {
+            let patch = self.patch(id);
+            if patch.is_triangle() {
+                let corners = [(0, 0), (UNIT, 0), (0, UNIT)];
+                self.add_root(id, &corners.map(|(u, v)| Lattice::new(u, v)));
+                continue;
+            }
+            let (columns, rows) = patch.grid;
             let (du, dv) = (UNIT / columns, UNIT / rows);
             for row in 0..rows {
                 for column in 0..columns {

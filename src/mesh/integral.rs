@@ -41,6 +41,7 @@ impl Mesh {
         let mut weights = take(&mut self.weights);
         let mut buried_weights = take(&mut self.buried_weights);
         let vertices = patches.iter().flat_map(|p| self.vertices_of(*p));
+        weights.reserve(self.vertex_room() - weights.len());
         weights.resize(self.vertices.len(), 0.0);
         vertices.clone().for_each(|v| weights[v as usize] = 0.0);
         for (leaf, areas) in leaves.iter().zip(areas) {

@@ -115,6 +115,11 @@ impl Mesh {
         roots + (self.elements.len() - roots) / 4 * 3
     }
 
+    /// How many vertices there is room for, also for what is kept by vertex, before anything has to be moved.
+    pub fn vertex_room(&self) -> usize {
+        self.vertices.capacity()
+    }
+
     /// The patch with a number.
     #[inline(always)]
     pub fn patch(&self, number: u32) -> Patch {

@@ -52,9 +52,14 @@ impl Sign {
 impl Light {
     /// Darkness, with everything to be emitted unshot.
     pub fn new(mesh: &Mesh) -> Self {
+        let dark = || {
+            let mut dark = Vec::with_capacity(mesh.vertex_room());
+            dark.resize(mesh.vertices.len(), Spectrum::ZERO);
+            dark
+        };
         Self {
-            irradiance: vec![Spectrum::ZERO; mesh.vertices.len()],
-            unshot: vec![Spectrum::ZERO; mesh.vertices.len()],
+            irradiance: dark(),
+            unshot: dark(),
             exitance_unshot: mesh.patches.iter().map(|p| p.exitance).collect(),
         }
     }

@@ -16,7 +16,6 @@ use super::tiling::Tiling;
 use crate::form_factor::Gather;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
-use rayon::iter::repeat_n;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -103,13 +102,15 @@ impl<'a> Solver<'a> {
     }
 
     pub(super) fn set_out(&mut self, kind: Kind, cells: Vec<Spectrum>, power: f64) {
+        let mut arrived = Vec::with_capacity(self.mesh.vertex_room());
+        arrived.resize(self.mesh.vertices.len(), Gather::default());
         self.course.stage = Stage::Waving(Wave {
             kind,
             cells,
             power,
             next: 0,
             within: 0,
-            arrived: repeat_n(Gather::default(), self.mesh.vertices.len()).collect(),
+            arrived,
         });
     }
 

@@ -109,7 +109,8 @@ pub fn regions(scene: &Scene, frame: &Frame) -> Regions {
 
 /// Splits the surfaces of a scene along their lines of contact, those of a region as one; the pieces' corners are in the frame.
 pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
-    let splitter = Splitter::new(scene, frame, regions);
+    let shapes = Shapes::new(scene, frame);
+    let splitter = Splitter::new(&shapes, frame, regions);
     let heads = (0..scene.surfaces.len() as u32).into_par_iter();
     // Most surfaces touch no others: keep only what came of those that do.
     let mut cut: Vec<(u32, Option<Vec<Piece>>)> = heads
@@ -120,43 +121,36 @@ pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
         })
         .collect();
     cut.par_sort_unstable_by_key(|(number, _)| *number);
+    drop(splitter);
 
     let mut pieces = Pieces::default();
+    pieces.list.reserve(scene.surfaces.len());
     let mut cut = cut.into_iter().peekable();
     for number in 0..scene.surfaces.len() as u32 {
         match cut.next_if(|(of, _)| *of == number) {
             Some((_, Some(tiles))) => pieces.list.extend(tiles),
             failed => {
                 pieces.unsplit += usize::from(failed.is_some());
-                pieces.list.push(splitter.whole(number));
+                pieces.list.push(shapes.whole(number));
             }
         }
     }
     pieces
 }
 
-/// What it takes to split surfaces.
-struct Splitter<'a> {
+/// The surfaces of a scene, in the frame.
+struct Shapes<'a> {
     surfaces: &'a [Surface],
-    regions: &'a Regions,
     positions: Vec<DVec3>,
-    neighbours: Neighbours,
     outlines: Outlines,
-    reach: f64,
-    fine: f64,
 }
 
-impl<'a> Splitter<'a> {
-    fn new(scene: &'a Scene, frame: &Frame, regions: &'a Regions) -> Self {
-        let positions = scene.positions_in(frame);
+impl<'a> Shapes<'a> {
+    fn new(scene: &'a Scene, frame: &Frame) -> Self {
         Self {
             surfaces: &scene.surfaces,
-            regions,
-            neighbours: Neighbours::new(&scene.surfaces, &positions),
-            positions,
+            positions: scene.positions_in(frame),
             outlines: Outlines::new(&scene.surfaces),
-            reach: REACH * frame.extent(),
-            fine: FINE * frame.extent(),
         }
     }
 
@@ -166,16 +160,40 @@ impl<'a> Splitter<'a> {
         corners.map(|v| self.positions[*v as usize]).collect()
     }
 
+    fn outline(&self, surface: u32) -> [bool; 4] {
+        self.outlines.of(&self.surfaces[surface as usize])
+    }
+
     fn whole(&self, surface: u32) -> Piece {
-        let outline = self.outlines.of(&self.surfaces[surface as usize]);
-        Piece::new(surface, &self.corners(surface), outline)
+        Piece::new(surface, &self.corners(surface), self.outline(surface))
+    }
+}
+
+/// What it takes to split surfaces.
+struct Splitter<'a> {
+    shapes: &'a Shapes<'a>,
+    regions: &'a Regions,
+    neighbours: Neighbours,
+    reach: f64,
+    fine: f64,
+}
+
+impl<'a> Splitter<'a> {
+    fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions) -> Self {
+        Self {
+            shapes,
+            regions,
+            neighbours: Neighbours::new(shapes.surfaces, &shapes.positions),
+            reach: REACH * frame.extent(),
+            fine: FINE * frame.extent(),
+        }
     }
 
     /// The pieces of a surface that others touch, `None` if it cannot be split; nothing for one that none touches.
     fn alone(&self, surface: u32) -> Option<(u32, Option<Vec<Piece>>)> {
-        let face = Face::new(&self.corners(surface), self.reach)?;
+        let face = Face::new(&self.shapes.corners(surface), self.reach)?;
         let lines = self.lines(&face, surface);
-        let outline = self.outlines.of(&self.surfaces[surface as usize]);
+        let outline = self.shapes.outline(surface);
         (!lines.is_empty()).then(|| (surface, split(&face, surface, &lines, outline, self.fine)))
     }
 
@@ -198,12 +216,12 @@ impl<'a> Splitter<'a> {
     }
 
     fn region(&self, members: &[u32]) -> Option<Vec<Piece>> {
-        let at = |v: u32| self.positions[v as usize];
-        let border = regions::border(members.iter().map(|m| &self.surfaces[*m as usize]));
+        let at = |v: u32| self.shapes.positions[v as usize];
+        let border = regions::border(members.iter().map(|m| &self.shapes.surfaces[*m as usize]));
         let sides: Vec<[DVec3; 2]> = border.iter().map(|side| side.map(at)).collect();
         let areas = members
             .iter()
-            .map(|m| polygon::vector_area(&self.corners(*m)));
+            .map(|m| polygon::vector_area(&self.shapes.corners(*m)));
         let face = Face::around(&sides, areas.sum(), self.reach)?;
         let around = face.border.as_ref()?;
         let met = self.lines(&face, members[0]);
@@ -226,8 +244,8 @@ impl<'a> Splitter<'a> {
             .of(face.corners(), self.reach + face.thickness);
         let others = near
             .filter(|other| self.regions.first(*other) != first)
-            .map(|other| self.surfaces[other as usize].corners);
-        lines::lines(face, others, &self.positions)
+            .map(|other| self.shapes.surfaces[other as usize].corners);
+        lines::lines(face, others, &self.shapes.positions)
     }
 }
 
