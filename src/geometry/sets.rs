@@ -32,17 +32,17 @@ impl Sets {
         self.parent[a.max(b) as usize] = a.min(b);
     }
 
-    /// The sets of more than one member, each in order.
-    pub fn groups(mut self) -> Vec<Vec<u32>> {
-        let mut members: Vec<(u32, u32)> = (0..self.parent.len() as u32)
-            .map(|member| (self.root(member), member))
-            .collect();
+    /// The members of all sets of more than one, each after the lowest of its set; set by set, and in order.
+    pub fn members(mut self) -> Vec<(u32, u32)> {
+        let mut is_shared = vec![false; self.parent.len()];
+        for member in 0..self.parent.len() as u32 {
+            let root = self.root(member);
+            is_shared[root as usize] |= root != member;
+        }
+        let all = (0..self.parent.len() as u32).map(|member| (self.root(member), member));
+        let mut members: Vec<(u32, u32)> =
+            all.filter(|(root, _)| is_shared[*root as usize]).collect();
         members.par_sort_unstable();
-        let groups = members
-            .chunk_by(|a, b| a.0 == b.0)
-            .filter(|group| group.len() > 1);
-        groups
-            .map(|group| group.iter().map(|(_, v)| *v).collect())
-            .collect()
+        members
     }
 }

@@ -59,12 +59,15 @@ impl Mesh {
             leader: (0..self.vertices.len() as u32).collect(),
             ..Weld::default()
         };
-        let sites = sites.groups();
-        let settled: Vec<_> = sites.par_iter().map(|site| self.settled(site)).collect();
-        for (site, settled) in sites.iter().zip(settled) {
-            if let Some(settled) = settled {
-                weld.sites.insert(site[0], settled);
-                site.iter().for_each(|v| weld.leader[*v as usize] = site[0]);
+        let members = sites.members();
+        let settled: Vec<(u32, (DVec3, Vec3))> = members
+            .par_chunk_by(|a, b| a.0 == b.0)
+            .filter_map(|site| Some((site[0].0, self.settled(site)?)))
+            .collect();
+        weld.sites = settled.into_iter().collect();
+        for (first, vertex) in members {
+            if weld.sites.contains_key(&first) {
+                weld.leader[vertex as usize] = first;
             }
         }
         for patch in self.patches.iter().filter(|patch| self.is_small(patch)) {
@@ -179,22 +182,21 @@ impl Mesh {
     }
 
     /// Where and with which normal the corners in a site receive as one, if they can.
-    fn settled(&self, site: &[u32]) -> Option<(DVec3, Vec3)> {
-        let patch_of = |v: &u32| self.patch(self.vertices[*v as usize].patch);
-        let position = self.position(site[0]);
-        let normal: DVec3 = site
-            .iter()
-            .map(|v| patch_of(v).normal * angle_at(&patch_of(v), position))
-            .sum();
-        let normal = normal.normalize_or_zero();
-        if site.iter().any(|v| patch_of(v).normal.dot(normal) < FACING) {
+    fn settled(&self, site: &[(u32, u32)]) -> Option<(DVec3, Vec3)> {
+        let vertices = || site.iter().map(|(_, vertex)| *vertex);
+        let patch_of = |v: u32| self.patch(self.vertices[v as usize].patch);
+        let position = self.position(site[0].1);
+        let angled = |v: u32| patch_of(v).normal * angle_at(&patch_of(v), position);
+        let normal = vertices().map(angled).sum::<DVec3>().normalize_or_zero();
+        let faces_away = |v: u32| patch_of(v).normal.dot(normal) < FACING;
+        if vertices().any(faces_away) {
             return None;
         }
-        let moved = site.iter().map(|v| self.point(*v) - position);
+        let moved = vertices().map(|v| self.point(v) - position);
         let mean = moved.sum::<DVec3>() / site.len() as f64;
         // Not below any of its patches.
-        let below = |v: &u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);
-        let up = site.iter().map(below).fold(0.0, f64::max);
+        let below = |v: u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);
+        let up = vertices().map(below).fold(0.0, f64::max);
         Some((position + mean + normal * up, normal.as_vec3()))
     }
 

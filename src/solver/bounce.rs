@@ -23,7 +23,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// Slices of a cube.
-const SLICES: f64 = 4.0;
+const SLICES: u64 = 4;
 
 /// The patches of a sheet are received for apart from others nearby if they have this part of the area of a side of a cube.
 const LARGE: f64 = 1.0 / 16.0;
@@ -60,15 +60,12 @@ impl Bounce {
 impl Neighbourhoods {
     pub fn new(mesh: &Mesh, visibility: &dyn Visibility) -> Self {
         let side = side(mesh);
-        let sheets = sheets(mesh, visibility, side / SLICES);
+        let sheets = sheets(mesh, visibility, side / SLICES as f64);
         let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
-        let mut keyed: Vec<((u64, [u32; 2]), u32)> = (0..mesh.vertices.len() as u32)
+        let mut keyed: Vec<(u64, u32, u32)> = (0..mesh.vertices.len() as u32)
             .into_par_iter()
             .filter(|v| !mesh.buried[*v as usize])
-            .map(|v| {
-                let (cube, slice) = key(mesh, v, side);
-                ((cube, [slice, sheet(v)]), v)
-            })
+            .map(|v| (key(mesh, v, side), sheet(v), v))
             .collect();
         keyed.par_sort_unstable();
         let sees = |a: u32, b: u32| {
@@ -76,10 +73,10 @@ impl Neighbourhoods {
             see_one_another(visibility, a, b)
         };
         let cubes: Vec<Lists> = keyed
-            .par_chunk_by(|a, b| a.0.0 == b.0.0)
+            .par_chunk_by(|a, b| a.0 / SLICES == b.0 / SLICES)
             .map(|cube| {
-                let parts = cube.chunk_by(|a, b| a.0 == b.0);
-                let parts = parts.map(|part| part.iter().map(|(_, v)| *v).collect());
+                let parts = cube.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+                let parts = parts.map(|part| part.iter().map(|(_, _, v)| *v).collect());
                 let is_large = |of: &Vec<u32>| !is_little(mesh, area(mesh, of));
                 let (mut large, small): (Vec<Vec<u32>>, Vec<Vec<u32>>) = parts.partition(is_large);
                 large.extend(pooled(small, sees));
@@ -122,7 +119,8 @@ impl Neighbourhoods {
             let mut pending = vec![vertices.to_vec()];
             while let Some(part) = pending.pop() {
                 let power: f64 = part.iter().map(|v| reflected(*v)).sum();
-                match halves(mesh, &part).filter(|_| power > all / SHARES) {
+                let is_strong = power > all / SHARES;
+                match is_strong.then(|| halves(mesh, &part)).flatten() {
                     Some(halves) => pending.extend(halves),
                     None => near.push(&part),
                 }
@@ -165,16 +163,15 @@ impl Lists {
 
 /// The cube that a vertex is in with the way its patch faces, fronts apart from backs, and the slice of the cube across that way: the
 /// inside of a thin box has nothing of the light outside.
-fn key(mesh: &Mesh, vertex: u32, side: f64) -> (u64, u32) {
-    let of = &mesh.vertices[vertex as usize];
-    let patch = mesh.patch(of.patch);
+fn key(mesh: &Mesh, vertex: u32, side: f64) -> u64 {
+    let patch = mesh.patch(mesh.vertices[vertex as usize].patch);
     let face = facing(patch.normal);
     let place = mesh.point(vertex) / side;
     let [x, y, z] = place.floor().as_i64vec3().to_array();
-    let [x, y, z] = [x, y, z].map(|i| (i & 0xf_ffff) as u64);
-    let slice = (place[face / 2].rem_euclid(1.0) * SLICES) as u32;
+    let [x, y, z] = [x, y, z].map(|i| (i & 0x3_ffff) as u64);
+    let slice = (place[face / 2].rem_euclid(1.0) * SLICES as f64) as u64;
     let turned = 2 * face as u64 + u64::from(patch.back);
-    (turned << 60 | x << 40 | y << 20 | z, slice)
+    (turned << 54 | x << 36 | y << 18 | z) * SLICES + slice
 }
 
 /// Parts that can see one another put together.

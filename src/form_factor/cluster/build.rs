@@ -12,7 +12,7 @@ const DEEPEST_IN_SPACE: u32 = 40;
 
 impl Clusters {
     /// The tree over `tiles`, in a scene of the given extent; nothing radiates yet.
-    pub fn new(tiles: Vec<Tile>, extent: f64) -> Self {
+    pub fn new(mut tiles: Vec<Tile>, extent: f64) -> Self {
         let mut order: Vec<u32> = (0..tiles.len() as u32).collect();
         let side = |tile: &u32| {
             let of = &tiles[*tile as usize];
@@ -35,17 +35,30 @@ impl Clusters {
         for (place, tile) in (0..).zip(&order) {
             places[*tile as usize] = place;
         }
+        drop(order);
+        rearrange(&mut tiles, &mut places.clone());
         Self {
             radiosity: vec![Spectrum::ZERO; tiles.len()],
             sends: repeat_n(Sends::default(), nodes.len()).collect(),
             sums: vec![0.0; tiles.len() + 1],
             steps: Vec::new(),
-            tiles: order.par_iter().map(|tile| tiles[*tile as usize]).collect(),
+            tiles,
             places,
             nodes,
             roots,
             seed: 0,
             offset: (SURFACE_OFFSET * extent) as f32,
+        }
+    }
+}
+
+/// Brings each tile to its place, within the memory that they have.
+fn rearrange(tiles: &mut [Tile], places: &mut [u32]) {
+    for at in 0..tiles.len() {
+        while places[at] as usize != at {
+            let place = places[at] as usize;
+            tiles.swap(at, place);
+            places.swap(at, place);
         }
     }
 }

@@ -109,11 +109,11 @@ pub(super) fn quad(border: &[[u32; 2]]) -> Option<[u32; 4]> {
 
 /// Pairs of triangles that may be one surface, both ways, in order.
 fn neighbours(surfaces: &[Surface], positions: &[DVec3]) -> Vec<(u32, u32)> {
-    let mut all: Vec<([u32; 2], u32)> = surfaces
-        .par_iter()
-        .zip(0..surfaces.len() as u32)
-        .flat_map_iter(|(surface, number)| sides(surface).map(move |side| (sorted(side), number)))
-        .collect();
+    let count = surfaces.iter().map(|of| of.corners.indices().len()).sum();
+    let mut all: Vec<([u32; 2], u32)> = Vec::with_capacity(count);
+    for (number, surface) in (0..).zip(surfaces) {
+        all.extend(sides(surface).map(|side| (sorted(side), number)));
+    }
     all.par_sort_unstable();
     let chunks = all.par_chunk_by(|x, y| x.0 == y.0);
     let mut pairs: Vec<(u32, u32)> = chunks
