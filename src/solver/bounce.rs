@@ -64,9 +64,9 @@ impl Neighbourhoods {
         let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
         let mut keyed: Vec<(u64, u32, u32)> = (0..mesh.vertices.len() as u32)
             .into_par_iter()
-            .filter(|v| !mesh.buried[*v as usize])
             .map(|v| (key(mesh, v, side), sheet(v), v))
             .collect();
+        keyed.retain(|(_, _, v)| !mesh.buried[*v as usize]);
         keyed.par_sort_unstable();
         let sees = |a: u32, b: u32| {
             let [a, b] = [a, b].map(|v| above(mesh, v));
@@ -94,7 +94,10 @@ impl Neighbourhoods {
     /// None yet.
     fn none(mesh: &Mesh) -> Self {
         Self {
-            lists: Lists::default(),
+            lists: Lists {
+                vertices: Vec::with_capacity(mesh.vertices.len()),
+                ends: Vec::new(),
+            },
             of: vec![NONE; mesh.vertices.len()],
         }
     }
