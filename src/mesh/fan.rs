@@ -99,12 +99,14 @@ impl Mesh {
     /// gets the nearest triangle's continuation, clamped to it.
     pub fn interpolate(&self, leaf: u32, point: DVec3) -> [Weighted; 3] {
         let of = &self.elements[leaf as usize];
-        let normal = self.patch(of.patch).normal;
-        let centre = self.position(of.centre);
-        let mut next = self.position(of.corners[0]);
+        let patch = self.patch(of.patch);
+        let normal = patch.normal;
+        let position = |vertex: u32| patch.position(self.vertices[vertex as usize].lattice);
+        let centre = position(of.centre);
+        let mut next = position(of.corners[0]);
         let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
         for triangle in self.fan(leaf) {
-            let (b, c) = (next, self.position(triangle[2]));
+            let (b, c) = (next, position(triangle[2]));
             next = c;
             let area = (b - centre).cross(c - centre).dot(normal);
             let beta = (point - centre).cross(c - centre).dot(normal) / area;

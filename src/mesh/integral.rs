@@ -22,10 +22,12 @@ impl Mesh {
         });
         let leaves: Vec<u32> = leaves.collect();
         let triangles = |of: &Element| {
-            let centre = self.position(of.centre);
+            let patch = self.patch(of.patch);
+            let position = |vertex: u32| patch.position(self.vertices[vertex as usize].lattice);
+            let centre = position(of.centre);
             let arms = of.corners.map(|corner| match corner {
                 NONE => DVec3::ZERO,
-                corner => self.position(corner) - centre,
+                corner => position(corner) - centre,
             });
             let count = of.corners().len();
             let area = |i: usize| arms[i].cross(arms[(i + 1) % count]).length() / 2.0;
