@@ -15,6 +15,7 @@ mod feelers;
 mod groups;
 mod ledger;
 mod light;
+mod neighbourhoods;
 mod observer;
 mod open;
 mod options;

@@ -2,11 +2,11 @@
 
 use super::audit::Audit;
 use super::behind::Surfaces;
-use super::bounce::Neighbourhoods;
 use super::burial::buried;
 use super::course::{Bounce, Course, Stage};
 use super::ledger::Ledger;
 use super::light::{Light, Sign};
+use super::neighbourhoods::Neighbourhoods;
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
