@@ -9,6 +9,7 @@ use super::error::{ErrorModel, Squares};
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::{Shooter, evaluate};
+use super::tiling::Tiling;
 use crate::form_factor::{Receiver, Sampler, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
@@ -163,7 +164,8 @@ impl Solver<'_> {
         (fine, plain): (&Sampler, &Sampler),
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
-        let mut shooter = self.tiling().radiating(&self.mesh, whole);
+        let tiling = Tiling::even(&self.mesh, whole, (&self.options, fine.thresholds.scale));
+        let mut shooter = tiling.radiating(&self.mesh, whole);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
             let even = Spectrum::splat(self.reference as f32);

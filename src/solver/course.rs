@@ -7,7 +7,7 @@ use super::light::{Light, Sign};
 use super::observer::Phase;
 use super::shoot::Shooter;
 use super::source::source_from;
-use super::tiling::tile_count;
+use super::tiling;
 use super::wave::Wave;
 use crate::form_factor::{DEEPEST, Gather};
 use crate::mesh::Mesh;
@@ -166,7 +166,7 @@ impl Course {
             Stage::Refining(shot) | Stage::Settling(shot) => {
                 let mut levels = 1..=DEEPEST;
                 let fits = match shot.shooter {
-                    ALL => shot.cells.len() == tile_count(mesh),
+                    ALL => tiling::fits(mesh, &shot.cells),
                     patch => patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l)),
                 };
                 fits && shot.candidates.iter().all(|e| *e < elements)
@@ -174,7 +174,7 @@ impl Course {
                     && shot.arrived.len() == mesh.vertices.len()
             }
             Stage::Waving(wave) => {
-                wave.cells.len() == tile_count(mesh)
+                tiling::fits(mesh, &wave.cells)
                     && wave.arrived.len() == mesh.vertices.len()
                     && wave.next < patches
             }

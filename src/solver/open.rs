@@ -59,9 +59,13 @@ impl<'a> OpenLight<'a> {
             };
             std::iter::repeat_n(backing, patch.corners().len() - 2)
         });
-        let clusters = options.clusters(mesh);
+        let shooter = || {
+            let scale = options.source_thresholds(reference).scale;
+            Tiling::even(mesh, &whole, (options, scale)).radiating(mesh, &whole)
+        };
+        let clusters = options.clusters(mesh).then(shooter);
         Self {
-            clusters: clusters.then(|| Tiling::new(mesh).radiating(mesh, &whole)),
+            clusters,
             mesh,
             whole,
             options,

@@ -291,6 +291,16 @@ impl Options {
         }
     }
 
+    /// How many times looser tests 1 and 2 are on an element whose longest side is this fraction of the scene's extent.
+    pub(super) fn growth(&self, side: f64) -> f64 {
+        let shrunk = (self.limits.initial_size / side).max(1.0);
+        match self.size_exponent {
+            0.0 => 1.0,
+            1.0 => shrunk,
+            exponent => shrunk.powf(exponent),
+        }
+    }
+
     /// Whether a mesh has so many patches that they shoot as clusters.
     pub fn clusters(&self, mesh: &Mesh) -> bool {
         mesh.patches.len() > self.cluster_from

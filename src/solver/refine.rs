@@ -288,13 +288,7 @@ pub(super) fn unit(
     options: &Options,
     element: u32,
 ) -> f64 {
-    let h0 = options.limits.initial_size * mesh.frame.extent();
-    let shrunk = (h0 / mesh.longest_side(element)).max(1.0);
-    let growth = match options.size_exponent {
-        0.0 => 1.0,
-        1.0 => shrunk,
-        exponent => shrunk.powf(exponent),
-    };
+    let growth = options.growth(mesh.longest_side(element) / mesh.frame.extent());
     scale(mesh, light, beam, element) * growth
 }
 

@@ -3,7 +3,7 @@
 use super::course::MeshingEnd;
 use super::options::Options;
 use super::run::Solver;
-use super::tiling::tile_count;
+use super::tiling::cell_count;
 use crate::form_factor::Clusters;
 use crate::mesh::Mesh;
 
@@ -26,7 +26,7 @@ pub fn memory_for(mesh: &Mesh, options: &Options, engine: u64) -> u64 {
 /// The part of it that does not grow with the leaves.
 fn without_leaves(mesh: &Mesh, options: &Options, engine: u64) -> u64 {
     let tiles = if options.clusters(mesh) {
-        tile_count(mesh)
+        cell_count(mesh)
     } else {
         0
     };

@@ -9,6 +9,7 @@ use super::bounce::MOST_RATIO;
 use super::course::{Bounce, Shot, Stage};
 use super::light::{Light, Sign};
 use super::run::Solver;
+use super::tiling::Tiling;
 use super::wave::{Kind, Wave};
 use crate::radiometry::Spectrum;
 use rayon::prelude::*;
@@ -21,8 +22,12 @@ impl Solver<'_> {
     pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
         self.neighbourhoods = None;
         let prospect = self.prospect(bounce);
-        let tiling = self.tiling();
-        let cells = tiling.unshot(&self.mesh, &self.foreseen(prospect), Sign::Positive);
+        self.tiling = None;
+        let foreseen = self.foreseen(prospect);
+        let scale = self.sampler().thresholds.scale;
+        let tiling = Tiling::even(&self.mesh, &foreseen, (&self.options, scale));
+        let cells = tiling.unshot(&self.mesh, &foreseen, Sign::Positive);
+        drop(foreseen);
         self.tiling = Some(tiling);
         self.set_out(Kind::Whole(prospect), cells, 1.0);
     }
@@ -80,7 +85,6 @@ impl Solver<'_> {
         self.pass(&mut shot, &sampler, &all);
         if shot.candidates.is_empty() {
             self.course.sent_sum = self.sent_sum();
-            self.keep_tiling(all);
             self.course.stage = Stage::Finished;
         } else {
             shot.made = Some(all);

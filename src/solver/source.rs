@@ -146,7 +146,7 @@ fn subdivide(mut cells: Vec<Quad>, triangle: bool, levels: u32) -> Vec<Quad> {
 }
 
 /// The four parts of a cell, in the order of the pyramid.
-fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
+pub(super) fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
     let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
     let (ab, bc) = (half(a, b), half(b, c));
     if triangle {
@@ -169,7 +169,7 @@ fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
 }
 
 /// The interpolant at the cell's centre; where elements are finer than the cell, the mean over its parts.
-fn cell_mean(
+pub(super) fn cell_mean(
     mesh: &Mesh,
     patch: usize,
     cell: &Quad,
@@ -198,7 +198,7 @@ fn cell_mean(
     mesh.interpolated(leaf, point, radiosity)
 }
 
-/// The areas of the cells that a patch is cut into. Those of triangles and parallelograms are all the same.
+/// The areas of the cells that a patch is cut into. On triangles and parallelograms they are as large as in the coordinates.
 fn areas(of: &Patch, cells: &[Quad]) -> Vec<f64> {
     if let [a, b, c, d] = *of.corners()
         && (a + c).distance(b + d) > 1e-9 * a.distance(c)
@@ -209,5 +209,13 @@ fn areas(of: &Patch, cells: &[Quad]) -> Vec<f64> {
             .map(|cell| vector_area(&corners(cell)).length())
             .collect();
     }
-    vec![of.area / cells.len() as f64; cells.len()]
+    let whole = root(of.is_triangle());
+    let share = |cell: &Quad| area_in_coordinates(cell) / area_in_coordinates(&whole);
+    cells.iter().map(|cell| of.area * share(cell)).collect()
+}
+
+fn area_in_coordinates(&[a, b, c, d]: &Quad) -> f64 {
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+    0.5 * cross(way(a, c), way(b, d)).abs()
 }

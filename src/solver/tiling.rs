@@ -1,26 +1,41 @@
 //! All patches of a large scene as the tiles that its clusters are made of.
+//!
+//! A tile is even, and that is wrong for what is beside it: a pane that is bright at its rim and dark in the middle lights the pane behind it as
+//! if it were grey. So for the gathering tiles are cut into four, and these again, where what they send is uneven.
 
 use super::escape::Part;
 use super::light::{Light, Sign};
+use super::options::Options;
 use super::shoot::Shooter;
-use super::source::{Quad, cells_at, cells_in, means_on};
-use crate::form_factor::{Clusters, DEEPEST, Tile};
+use super::source::{Quad, cell_mean, cells_at, cells_in, means_on, parts};
+use crate::form_factor::{Clusters, DEEPEST, Tile, ToleranceScale};
 use crate::geometry::polygon::diameter;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 /// Tiles are no longer than this fraction of the scene's extent; those of triangles are, if it took more than [`DEEPEST`] levels.
 pub(super) const SIZE: f64 = 1.0 / 128.0;
 
-/// The tiles of a mesh. They depend on its patches alone, not on how these are meshed.
+/// An uneven tile is cut into four, and these again, at most so many times.
+const MOST_CUTS: u32 = 4;
+
+/// Stands before what the parts of a cell send that is cut into four.
+const CUT: Spectrum = Spectrum::NAN;
+
+/// The tiles of a mesh.
 #[derive(Debug, Clone)]
 pub(super) struct Tiling {
     pub clusters: Clusters,
-    /// How each patch is cut into tiles; `None` for one that radiates nothing.
+    /// How each patch is cut into cells; `None` for one that radiates nothing. This depends on the patches alone, not on how they are meshed.
     cuts: Vec<Option<Cut>>,
+    uneven: Uneven,
 }
+
+/// By patch with cells that are cut into four: which ones are, a cell before its parts. All others are tiles.
+type Uneven = FxHashMap<u32, Vec<bool>>;
 
 /// How a patch is cut into tiles.
 #[derive(Debug, Clone, Copy)]
@@ -32,24 +47,64 @@ enum Cut {
 }
 
 impl Tiling {
+    /// A tile for each cell.
     pub fn new(mesh: &Mesh) -> Self {
+        Self::with(mesh, cuts(mesh), Uneven::default())
+    }
+
+    /// Tiles for what was `sent` once; see [`Self::unshot`].
+    pub fn for_sent(mesh: &Mesh, sent: &[Spectrum]) -> Self {
         let cuts = cuts(mesh);
-        let of_patch = |(patch, cut): (Patch, &Option<Cut>)| {
-            let cells = cut.map(|cut| cut.cells()).unwrap_or_default();
+        let uneven = uneven_in(&cuts, sent).unwrap_or_default();
+        Self::with(mesh, cuts, uneven)
+    }
+
+    /// Tiles on none of which what is unshot differs by more than the thresholds of test 2 allow on an element as large.
+    pub fn even(mesh: &Mesh, light: &Light, (options, scale): (&Options, ToleranceScale)) -> Self {
+        let cuts = cuts(mesh);
+        let evenness = Evenness {
+            mesh,
+            light,
+            options,
+            scale,
+        };
+        let of_patch = |(patch, cut): (usize, &Option<Cut>)| {
+            let marks = evenness.marks(patch, (*cut)?);
+            marks.contains(&true).then_some((patch as u32, marks))
+        };
+        let patches = cuts.par_iter().enumerate().with_min_len(64);
+        let uneven = patches.filter_map(of_patch).collect();
+        Self::with(mesh, cuts, uneven)
+    }
+
+    fn with(mesh: &Mesh, cuts: Vec<Option<Cut>>, uneven: Uneven) -> Self {
+        let of_patch = |(number, (patch, cut)): (usize, (Patch, &Option<Cut>))| {
+            let marks = uneven.get(&(number as u32));
+            let cells = cut.map(|cut| cut.cells(marks)).unwrap_or_default();
             let tiles: Vec<Tile> = cells.iter().map(|cell| tile(&patch, cell)).collect();
             tiles
         };
-        let tiles = mesh.patches.par_iter().zip(&cuts).flat_map_iter(of_patch);
+        let patches = mesh.patches.par_iter().zip(&cuts).enumerate();
         Self {
-            clusters: Clusters::new(tiles.collect(), mesh.frame.extent()),
+            clusters: Clusters::new(
+                patches.flat_map_iter(of_patch).collect(),
+                mesh.frame.extent(),
+            ),
             cuts,
+            uneven,
         }
+    }
+
+    /// The tiles send what was `sent`; `seed` draws the points that rays are aimed at.
+    pub fn radiate(&mut self, sent: &[Spectrum], seed: u32) {
+        let of_tiles = sent.iter().filter(|sent| !sent.is_nan());
+        self.clusters.radiate(of_tiles.copied().collect(), seed);
     }
 
     /// The tiles with all of `whole` to send, to be looked at once more.
     pub fn radiating(mut self, mesh: &Mesh, whole: &Light) -> Shooter {
-        let radiosity = self.unshot(mesh, whole, Sign::Positive);
-        self.clusters.radiate(radiosity, 0x6175_6469);
+        let sent = self.unshot(mesh, whole, Sign::Positive);
+        self.radiate(&sent, 0x6175_6469);
         Shooter::All {
             tiling: self,
             settled: true,
@@ -62,7 +117,10 @@ impl Tiling {
     ) -> impl Iterator<Item = Part<impl Fn(f64, f64) -> DVec3 + '_>> + Clone + '_ {
         let patches = (0..).zip(&self.cuts);
         let patches = patches.flat_map(|(patch, cut)| {
-            let count = cut.map_or(0, |cut| cut.count());
+            let count = match self.uneven.get(&patch) {
+                Some(marks) => marks.iter().filter(|is_cut| !**is_cut).count(),
+                None => cut.map_or(0, |cut| cut.count()),
+            };
             std::iter::repeat_n(patch, count)
         });
         let part = |(patch, (tile, radiosity)): (u32, (&'_ Tile, Spectrum))| {
@@ -77,11 +135,18 @@ impl Tiling {
         patches.zip(self.clusters.tiles()).map(part)
     }
 
-    /// What each tile has unshot of one sign.
+    /// What each tile has unshot of one sign, and [`CUT`] before that of the parts of a cell that is cut into four.
     pub fn unshot(&self, mesh: &Mesh, light: &Light, sign: Sign) -> Vec<Spectrum> {
         let of_patch = |(patch, cut): (usize, &Option<Cut>)| {
-            let means = |cut: Cut| means_on(mesh, light, (patch, sign), &cut.cells());
-            cut.map(means).unwrap_or_default()
+            let Some(cut) = cut else {
+                return Vec::new();
+            };
+            let marks = self.uneven.get(&(patch as u32));
+            let means = means_on(mesh, light, (patch, sign), &cut.cells(marks));
+            match marks {
+                Some(marks) => marked(marks, means),
+                None => means,
+            }
         };
         let patches = self.cuts.par_iter().enumerate().with_min_len(64);
         patches.flat_map_iter(of_patch).collect()
@@ -111,16 +176,123 @@ impl Cut {
         }
     }
 
-    fn cells(self) -> Vec<Quad> {
+    const fn is_triangle(self) -> bool {
+        matches!(self, Self::Levels(_))
+    }
+
+    /// The cells before any is cut into four.
+    fn whole_cells(self) -> Vec<Quad> {
         match self {
             Self::Levels(levels) => cells_at(true, levels),
             Self::Grid(columns, rows) => cells_in(columns, rows),
         }
     }
+
+    /// The cells that are tiles, with what is cut into four by its `marks`.
+    fn cells(self, marks: Option<&Vec<bool>>) -> Vec<Quad> {
+        let whole = self.whole_cells();
+        let Some(marks) = marks else {
+            return whole;
+        };
+        let mut cells = Vec::new();
+        let mut open: Vec<Quad> = whole.into_iter().rev().collect();
+        for is_cut in marks {
+            let cell = open.pop().expect("there is a mark for each cell");
+            if *is_cut {
+                open.extend(parts(&cell, self.is_triangle()).into_iter().rev());
+            } else {
+                cells.push(cell);
+            }
+        }
+        cells
+    }
 }
 
-/// Tiles that the patches of a mesh make.
-pub(super) fn tile_count(mesh: &Mesh) -> usize {
+/// Where what is unshot is uneven.
+struct Evenness<'a> {
+    mesh: &'a Mesh,
+    light: &'a Light,
+    options: &'a Options,
+    scale: ToleranceScale,
+}
+
+impl Evenness<'_> {
+    /// Which cells of a patch are cut into four, a cell before its parts.
+    fn marks(&self, patch: usize, cut: Cut) -> Vec<bool> {
+        let of = self.mesh.patch(patch as u32);
+        let mut marks = Vec::new();
+        if self.mesh.is_small(&of) || self.light.is_own(self.mesh, patch, Sign::Positive) {
+            return marks;
+        }
+        let mut open: Vec<(Quad, u32)> = cut.whole_cells().into_iter().map(|c| (c, 0)).collect();
+        open.reverse();
+        while let Some((cell, cuts)) = open.pop() {
+            let parts = parts(&cell, cut.is_triangle());
+            let is_cut = cuts < MOST_CUTS && self.differ(patch, &cell, &parts);
+            marks.push(is_cut);
+            if is_cut {
+                open.extend(parts.into_iter().rev().map(|part| (part, cuts + 1)));
+            }
+        }
+        marks
+    }
+
+    /// Whether what the parts of a cell have unshot differs by more than its size allows.
+    fn differ(&self, patch: usize, cell: &Quad, parts: &[Quad; 4]) -> bool {
+        let radiosity = |v: u32| self.light.unshot_radiosity(self.mesh, v, Sign::Positive);
+        let means = parts.map(|part| cell_mean(self.mesh, patch, &part, &radiosity, 1));
+        let low = means.into_iter().fold(Spectrum::INFINITY, Spectrum::min);
+        let high = means.into_iter().fold(Spectrum::ZERO, Spectrum::max);
+        let of = self.mesh.patch(patch as u32);
+        let corners = cell.map(|[u, v]| of.position_at(u, v));
+        let side = diameter(&corners[..of.corners().len()]);
+        let growth = self.options.growth(side / self.mesh.frame.extent());
+        let unit = self.scale.at(f64::from(high.max_element())) * growth;
+        f64::from((high - low).max_element()) > self.options.epsilon_r * unit
+    }
+}
+
+/// The means of the tiles of a patch, with a mark before those of the parts of a cell that is cut into four.
+fn marked(marks: &[bool], means: Vec<Spectrum>) -> Vec<Spectrum> {
+    let mut means = means.into_iter();
+    let sent = marks.iter().map(|is_cut| match is_cut {
+        true => CUT,
+        false => means.next().expect("there is a mean for each tile"),
+    });
+    sent.collect()
+}
+
+/// Whether `sent` has a number for each tile of a mesh, as [`Tiling::unshot`] gives them.
+pub(super) fn fits(mesh: &Mesh, sent: &[Spectrum]) -> bool {
+    uneven_in(&cuts(mesh), sent).is_some()
+}
+
+/// Which cells are cut into four as what they have `sent` is marked; `None` if it is not that of these patches.
+fn uneven_in(cuts: &[Option<Cut>], sent: &[Spectrum]) -> Option<Uneven> {
+    let mut uneven = Uneven::default();
+    let mut left = sent;
+    for (patch, cut) in (0..).zip(cuts) {
+        let mut open = cut.map_or(0, |cut| cut.count());
+        let mut end = 0;
+        while open > 0 {
+            open = if left.get(end)?.is_nan() {
+                open + 3
+            } else {
+                open - 1
+            };
+            end += 1;
+        }
+        let (of_patch, after) = left.split_at(end);
+        if of_patch.iter().any(|sent| sent.is_nan()) {
+            uneven.insert(patch, of_patch.iter().map(|sent| sent.is_nan()).collect());
+        }
+        left = after;
+    }
+    left.is_empty().then_some(uneven)
+}
+
+/// Cells that the patches of a mesh are cut into, each a tile if its light is even.
+pub(super) fn cell_count(mesh: &Mesh) -> usize {
     cuts(mesh).iter().flatten().map(|cut| cut.count()).sum()
 }
 
@@ -137,4 +309,43 @@ fn tile(patch: &Patch, cell: &Quad) -> Tile {
     let corners = cell.map(|[u, v]| patch.position_at(u, v));
     let count = patch.corners().len();
     Tile::new(&corners[..count], patch.normal, patch.back)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::options::Preset;
+    use crate::solver::trial::Trial;
+
+    #[test]
+    fn uneven_tiles_are_cut_and_known_again_by_what_they_sent() {
+        let options = Preset::Accurate.options();
+        let trial = Trial::after(1, options.clone());
+        let solver = trial.solver();
+        let mesh = &solver.mesh;
+        let light = solver.whole(Spectrum::ONE);
+        let scale = solver.sampler().thresholds.scale;
+        let tiling = Tiling::even(mesh, &light, (&options, scale));
+        let sent = tiling.unshot(mesh, &light, Sign::Positive);
+        let tiles = tiling.clusters.tiles().len();
+        assert!(tiles > cell_count(mesh), "{tiles} tiles");
+
+        let again = Tiling::for_sent(mesh, &sent);
+        let corners = |of: &Tiling| -> Vec<Tile> { of.clusters.tiles().map(|t| *t.0).collect() };
+        assert!(corners(&again) == corners(&tiling));
+        assert!(fits(mesh, &sent));
+        assert!(!fits(mesh, &sent[1..]) && !fits(mesh, &[&sent[..], &[CUT]].concat()));
+
+        let mut radiating = again;
+        radiating.radiate(&sent, 0);
+        let power = radiating.parts().map(|part| part.power.as_dvec3());
+        let power: glam::DVec3 = power.sum();
+        let patches = 0..mesh.patches.len();
+        let unshot = patches.map(|patch| light.unshot_power(mesh, patch, Sign::Positive));
+        let unshot: glam::DVec3 = unshot.sum();
+        assert!(
+            (power - unshot).abs().max_element() < 1e-5 * unshot.max_element(),
+            "{power} of {unshot}"
+        );
+    }
 }

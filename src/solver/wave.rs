@@ -37,7 +37,7 @@ const UNEVEN: f64 = 5.0;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Wave {
     pub kind: Kind,
-    /// Radiosity of the tiles.
+    /// What the tiles send; see [`Tiling::unshot`].
     pub cells: Vec<Spectrum>,
     /// As a fraction of the emitted power.
     pub power: f64,
@@ -122,10 +122,9 @@ impl<'a> Solver<'a> {
 
     /// The tiles as they radiate.
     pub(super) fn radiating(&mut self, cells: &[Spectrum], settled: bool) -> Shooter {
-        let mut tiling = self.tiling();
-        tiling
-            .clusters
-            .radiate(cells.to_vec(), self.course.shots as u32);
+        let kept = self.tiling.take();
+        let mut tiling = kept.unwrap_or_else(|| Tiling::for_sent(&self.mesh, cells));
+        tiling.radiate(cells, self.course.shots as u32);
         Shooter::All { tiling, settled }
     }
 
