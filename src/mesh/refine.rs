@@ -26,10 +26,15 @@ impl Mesh {
 
     /// Whether the limits allow an element to be split.
     pub fn may_split(&self, element: u32) -> bool {
+        self.may_split_above(element, self.limits.min_size)
+    }
+
+    /// Whether an element may be split, were it as small as this fraction of the scene's extent that none may.
+    pub fn may_split_above(&self, element: u32, min_size: f64) -> bool {
         let level = u32::from(self.elements[element as usize].level);
         // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
         level < self.limits.max_depth.min(17)
-            && self.longest_side(element) > self.limits.min_size * self.frame.extent()
+            && self.longest_side(element) > min_size * self.frame.extent()
     }
 
     /// Whether a patch is one element, which the limits do not allow to be split.

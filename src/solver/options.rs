@@ -5,6 +5,9 @@ use crate::mesh::{Mesh, MeshLimits};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
+/// In a scene of many patches the least size of an element on a patch that is larger, as a part of the least size of a patch.
+const FINEST: f64 = 0.2;
+
 /// What a shooting patch gives to a source cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -299,6 +302,15 @@ impl Options {
             1.0 => shrunk,
             exponent => shrunk.powf(exponent),
         }
+    }
+
+    /// Whether the limits allow an element to be split. Many patches are small by the least size of an element, and receive in groups; elements
+    /// of the others may be a few times smaller, where the tolerance that grows as they shrink still asks for it.
+    pub(super) fn may_split(&self, mesh: &Mesh, element: u32) -> bool {
+        let finest = FINEST * self.limits.min_size;
+        let is_small = || mesh.is_small(&mesh.patch(mesh.elements[element as usize].patch));
+        mesh.may_split(element)
+            || self.clusters(mesh) && mesh.may_split_above(element, finest) && !is_small()
     }
 
     /// Whether a mesh has so many patches that they shoot as clusters.

@@ -32,8 +32,9 @@ impl Refinement<'_> {
     /// Tests `candidates` (leaves), splits those that fail and computes the shot at the new vertices; returns the new
     /// leaves, which are to be tested next. Empty when all passed.
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
-        let may_split =
-            |e: &u32| self.mesh.elements[*e as usize].is_leaf() && self.mesh.may_split(*e);
+        let may_split = |e: &u32| {
+            self.mesh.elements[*e as usize].is_leaf() && self.options.may_split(self.mesh, *e)
+        };
         let fails = |e: &u32| {
             let unit = self.unit(*e);
             self.nodal_difference(*e, unit) || self.residual(*e, unit)
@@ -172,7 +173,7 @@ impl Refinement<'_> {
         let feelers = self.feelers.iter().map(|f| (f, leaf_of(f)));
         feelers
             .filter(|(f, leaf)| {
-                self.mesh.may_split(*leaf)
+                self.options.may_split(self.mesh, *leaf)
                     && f.width < self.mesh.longest_side(*leaf)
                     && !knows(f, *leaf)
             })

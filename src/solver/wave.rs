@@ -257,7 +257,7 @@ impl<'a> Solver<'a> {
         let candidates = self
             .mesh
             .leaves()
-            .filter(|e| meshes && self.mesh.may_split(*e));
+            .filter(|e| meshes && self.options.may_split(&self.mesh, *e));
         Shot {
             shooter: ALL,
             sign,
