@@ -64,7 +64,7 @@ impl Neighbourhoods {
         keyed.par_sort_unstable();
         let sees = |a: u32, b: u32| {
             let [from, to] = [a, b].map(|v| above(mesh, v, close(v)));
-            close(a) == close(b) && see_one_another(visibility, from, to)
+            see_one_another(visibility, from, to)
         };
         let cubes: Vec<Lists> = keyed
             .par_chunk_by(|a, b| a.0 / PARTS == b.0 / PARTS)
