@@ -222,16 +222,25 @@ fn closeness(mesh: &Mesh, visibility: &dyn Visibility, slice: f64) -> Vec<Closen
         let within = |close: &Closeness| distance < slice * STEP.powi(i32::from(*close));
         (0..CLOSEST).take_while(within).count() as Closeness
     };
-    let vertices: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    vertices
-        .par_chunks(BLOCK)
-        .flat_map_iter(|block| {
-            let rays: Vec<Ray> = block.iter().map(|v| in_front(*v)).collect();
-            let mut hits = Vec::new();
-            visibility.nearest(&rays, &mut hits);
-            hits.iter().map(of).collect::<Vec<_>>()
-        })
-        .collect()
+    let vertices = 0..mesh.vertices.len() as u32;
+    // What receives with others sees what they see.
+    let asked = vertices.clone().filter(|v| mesh.receiver_for(*v) == *v);
+    let asked: Vec<u32> = asked.collect();
+    let answers = asked.par_chunks(BLOCK).flat_map_iter(|block| {
+        let rays: Vec<Ray> = block.iter().map(|v| in_front(*v)).collect();
+        let mut hits = Vec::new();
+        visibility.nearest(&rays, &mut hits);
+        hits.iter().map(of).collect::<Vec<_>>()
+    });
+    let answers: Vec<Closeness> = answers.collect();
+    let mut closeness = vec![0; mesh.vertices.len()];
+    for (vertex, close) in asked.iter().zip(answers) {
+        closeness[*vertex as usize] = close;
+    }
+    for vertex in vertices {
+        closeness[vertex as usize] = closeness[mesh.receiver_for(vertex) as usize];
+    }
+    closeness
 }
 
 /// The side of a cube: as long as two tiles.

@@ -20,7 +20,7 @@ const LEAVES_PER_SPLIT: usize = 6;
 
 /// Memory that a run takes in all, bytes, if it refines `mesh` no further and its engine holds `engine`.
 pub fn memory_for(mesh: &Mesh, options: &Options, engine: u64) -> u64 {
-    without_leaves(mesh, options, engine) + mesh.leaves().count() as u64 * BYTES_PER_LEAF
+    without_leaves(mesh, options, engine) + mesh.leaf_count() as u64 * BYTES_PER_LEAF
 }
 
 /// The part of it that does not grow with the leaves.
@@ -37,7 +37,7 @@ impl Solver<'_> {
     /// Elements that may be split in the next pass.
     pub(super) fn room(&self) -> usize {
         let most = self.most_leaves().map_or(usize::MAX, |(most, _)| most);
-        most.saturating_sub(self.mesh.leaves().count()) / LEAVES_PER_SPLIT
+        most.saturating_sub(self.mesh.leaf_count()) / LEAVES_PER_SPLIT
     }
 
     /// The limit that leaves no room, if one does.
