@@ -40,7 +40,8 @@ pub(super) struct SolveFlags {
     /// First elements are no longer than this fraction of the scene's extent
     #[arg(long, value_name = "FRACTION", value_parser = positive, help_heading = MESHING)]
     initial_size: Option<f64>,
-    /// Elements below this fraction of the scene's extent are not split
+    /// Elements below this fraction of the scene's extent are not split; of patches that shoot as clusters, those below it receive in
+    /// groups, and elements of the others may be a fifth as small
     #[arg(long, value_name = "FRACTION", value_parser = positive, help_heading = MESHING)]
     min_size: Option<f64>,
     /// Deepest level of a quadtree

@@ -14,7 +14,8 @@ pub struct MeshLimits {
     pub initial_size: f64,
     /// Elements are split to this level of the quadtree and no further.
     pub max_depth: u32,
-    /// Elements whose longest side is below this fraction of the scene's extent are not split.
+    /// Elements whose longest side is below this fraction of the scene's extent are not split. Where patches shoot as clusters it is the least
+    /// size of a patch that is split; elements of such may be a fifth as small.
     pub min_size: f64,
 }
 

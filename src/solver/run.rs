@@ -20,7 +20,6 @@ use crate::radiometry::Power;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use rayon::prelude::*;
-use std::mem::{Discriminant, discriminant};
 use std::time::{Duration, Instant};
 
 /// A solve in progress.
@@ -42,8 +41,8 @@ pub struct Solver<'a> {
     pub(super) reference: f64,
     /// What all patches emit, W times the square of the frame's scale.
     emitted: Power,
-    /// What was unshot when that was last counted, for who watches, and in which stage.
-    unshot: Option<(Discriminant<Stage>, Power)>,
+    /// What was unshot when that was last counted, for who watches.
+    unshot: Option<Power>,
     /// What the solve took before it was taken up again.
     spent: Duration,
     started: Instant,
@@ -254,15 +253,11 @@ impl<'a> Solver<'a> {
     }
 
     fn progress(&mut self) -> Progress {
-        // Until a wave, or all light, has arrived everywhere, the light is what it was; passes of refinement hardly change it.
-        let has_passed = matches!(self.course.stage, Stage::Shooting | Stage::Bounced(_));
-        let stage = discriminant(&self.course.stage);
-        let known = self
-            .unshot
-            .filter(|(counted, _)| *counted == stage && !has_passed);
-        let count = || self.unshot_powers().iter().sum();
-        let unshot = known.map_or_else(count, |(_, unshot)| unshot);
-        self.unshot = Some((stage, unshot));
+        // Until a wave, or all light, has arrived everywhere, the light is what it was.
+        let stays = matches!(self.course.stage, Stage::Waving(_) | Stage::Gathering(_));
+        let known = self.unshot.filter(|_| stays);
+        let unshot = known.unwrap_or_else(|| self.unshot_powers().iter().sum());
+        self.unshot = Some(unshot);
         Progress {
             phase: self.course.phase(&self.mesh),
             shots: self.course.shots,
