@@ -180,7 +180,11 @@ impl Mesh {
     /// Where light is evaluated at a vertex, in the frame: its position, moved a hair inwards on the border of its patch.
     pub fn point(&self, vertex: u32) -> DVec3 {
         let of = &self.vertices[vertex as usize];
-        let patch = self.patch(of.patch);
+        self.point_on(&self.patch(of.patch), of)
+    }
+
+    /// That of a vertex of a patch which is at hand.
+    fn point_on(&self, patch: &Patch, of: &Vertex) -> DVec3 {
         let position = patch.position(of.lattice);
         if patch.on_border(of.lattice) {
             self.inwards(of.maker, position)

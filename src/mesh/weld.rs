@@ -98,12 +98,12 @@ impl Mesh {
         let of = &self.vertices[vertex as usize];
         let patch = self.patch(of.patch);
         if self.weld.sites.is_empty() {
-            return (self.point(vertex), patch.normal);
+            return (self.point_on(&patch, of), patch.normal);
         }
         match self.site(vertex) {
             Some((point, normal)) => (*point, normal.as_dvec3()),
             None => (
-                self.point(vertex),
+                self.point_on(&patch, of),
                 self.interpolated_normal(&patch, of.patch, of.lattice),
             ),
         }

@@ -164,8 +164,8 @@ impl Solver<'_> {
         (fine, plain): (&Sampler, &Sampler),
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
-        let tiling = Tiling::even(&self.mesh, whole, (&self.options, fine.thresholds.scale));
-        let mut shooter = tiling.radiating(&self.mesh, whole);
+        let how = (&self.options, fine.thresholds.scale);
+        let mut shooter = Tiling::radiating(&self.mesh, whole, how);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
             let even = Spectrum::splat(self.reference as f32);

@@ -61,7 +61,7 @@ impl<'a> OpenLight<'a> {
         });
         let shooter = || {
             let scale = options.source_thresholds(reference).scale;
-            Tiling::even(mesh, &whole, (options, scale)).radiating(mesh, &whole)
+            Tiling::radiating(mesh, &whole, (options, scale))
         };
         let clusters = options.clusters(mesh).then(shooter);
         Self {
