@@ -128,7 +128,8 @@ impl Kernel for Splitting<'_, '_> {
             ..
         } = self.scratch;
         let points = self.pairings.iter().zip(leaves).zip(fresh);
-        for ((pairing, leaves), fresh) in points {
+        // Where the last round has split nothing, there is nothing left to split.
+        for ((pairing, leaves), fresh) in points.filter(|((_, leaves), fresh)| **fresh < leaves.len()) {
             *fresh = pairing.split_disagreeing(leaves, marks, split);
         }
     }
