@@ -19,10 +19,6 @@ pub struct MeshLimits {
     pub min_size: f64,
 }
 
-/// With more pieces than this, slivers are not cut into elements shorter than the smallest: there would be more of these than of all
-/// others together.
-const MANY: usize = 2000;
-
 impl Mesh {
     /// The coarsest mesh: surfaces are split along the lines in which others meet them; then a patch for each radiating side
     /// of each piece, a grid of nearly square elements on each quad patch, one element on each triangle, split until
@@ -36,8 +32,8 @@ impl Mesh {
             unsplit_contacts: pieces.unsplit,
             ..Self::empty(frame, limits)
         };
-        let many = pieces.list.len() > MANY;
-        let shortest = if many {
+        // Of many slivers there would be more such elements than of all others together.
+        let shortest = if pieces.list.len() > contact::MANY {
             limits.min_size * mesh.frame.extent()
         } else {
             0.0

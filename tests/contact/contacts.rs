@@ -239,3 +239,33 @@ fn too_many_lines_leave_a_surface_whole_and_are_counted() {
             .all(|of| of.len() == 2 || of.len() == 3)
     );
 }
+
+/// Triangles of the floor with an angle below 10 degrees that are longer than a fiftieth of the scene.
+fn long_needles(found: &Pieces) -> usize {
+    let frame = found.mesh.frame;
+    let longest = 0.02 * frame.extent() / frame.scale();
+    let is_needle = |piece: &&Vec<DVec3>| {
+        let [a, b, c] = piece[..] else { return false };
+        let angle = |at: DVec3, to: DVec3, or: DVec3| (to - at).angle_between(or - at);
+        let least = angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b));
+        least < 10_f64.to_radians() && a.distance(b).max(b.distance(c)).max(c.distance(a)) > longest
+    };
+    found.of[0].iter().filter(is_needle).count()
+}
+
+#[test]
+fn posts_leave_hardly_a_needle_where_surfaces_are_many() {
+    let post = cuboid(DVec3::new(0.01, 0.6, 0.01));
+    let posts = (0..12).map(f64::from).fold(floor(4.0), |scene, i| {
+        let turn = DQuat::from_rotation_y(0.2 * i);
+        let place = turn * DVec3::new(0.1 + 0.05 * i, 0.3, 0.0);
+        scene.and(&post, turn, place)
+    });
+    let ball = sphere(0.2, 24);
+    assert!(ball.0.len() > 2000);
+    let many = posts
+        .clone()
+        .and(&ball, DQuat::IDENTITY, DVec3::new(0.0, 1.0, 0.0));
+    let [few, many] = [posts, many].map(|scene| long_needles(&pieces(&scene.scene(false))));
+    assert!(few > 5 && many < 3, "{few} and {many}");
+}

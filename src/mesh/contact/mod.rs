@@ -55,6 +55,12 @@ const MOST_LINES: usize = 10_000;
 /// Triangles no longer than this fraction of the scene's extent keep their small angles: elements are not longer either.
 const FINE: f64 = 0.1;
 
+/// With more surfaces than this a scene is large for its rooms, and a patch more is not a shot more …
+pub(super) const MANY: usize = 2000;
+
+/// … so needles are relieved down to this length: light across their tips is a star of streaks.
+const FINE_OF_MANY: f64 = 0.01;
+
 /// Pieces have the area of their surface to this relative precision, or it is left whole.
 const SAME_AREA: f64 = 1e-9;
 
@@ -180,12 +186,14 @@ struct Splitter<'a> {
 
 impl<'a> Splitter<'a> {
     fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions) -> Self {
+        let is_many = shapes.surfaces.len() > MANY;
+        let fine = if is_many { FINE_OF_MANY } else { FINE };
         Self {
             shapes,
             regions,
             neighbours: Neighbours::new(shapes.surfaces, &shapes.positions),
             reach: REACH * frame.extent(),
-            fine: FINE * frame.extent(),
+            fine: fine * frame.extent(),
         }
     }
 
