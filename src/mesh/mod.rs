@@ -90,7 +90,18 @@ impl Mesh {
 
     /// The leaves of a patch.
     pub fn leaves_of(&self, patch: &Patch) -> Vec<u32> {
-        self.cut(patch, 0.0)
+        let is_leaf = |e: &u32| self.elements[*e as usize].is_leaf();
+        self.elements_of(patch).filter(is_leaf).collect()
+    }
+
+    /// The elements of a patch, each before its parts.
+    fn elements_of(&self, patch: &Patch) -> impl Iterator<Item = u32> + use<'_> {
+        let mut open: Vec<u32> = patch.roots.clone().rev().collect();
+        std::iter::from_fn(move || {
+            let element = open.pop()?;
+            open.extend(self.elements[element as usize].parts().rev());
+            Some(element)
+        })
     }
 
     /// A cut through the quadtree of a patch: the largest elements no longer than `longest`, and leaves where there are none.

@@ -142,15 +142,29 @@ impl Mesh {
 
     /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.
     pub fn unbalanced(&self) -> Vec<u32> {
-        let is_unbalanced = |element: &Element| {
-            element.is_leaf()
-                && self.touched[element.patch as usize]
-                && self.has_quarter_vertex(element)
+        let is_unbalanced = |e: &u32| {
+            let element = &self.elements[*e as usize];
+            element.is_leaf() && self.has_quarter_vertex(element)
         };
-        let numbered = self.elements.par_iter().enumerate().with_min_len(1024);
-        numbered
-            .filter(|(_, element)| is_unbalanced(element))
-            .map(|(number, _)| number as u32)
+        let elements = self.elements_on(&self.touched()).into_par_iter();
+        let unbalanced = elements.with_min_len(1024).filter(is_unbalanced);
+        let mut unbalanced: Vec<u32> = unbalanced.collect();
+        unbalanced.sort_unstable();
+        unbalanced
+    }
+
+    /// The patches that were split since hanging vertices were last found: few, when a mesh is nearly done.
+    fn touched(&self) -> Vec<u32> {
+        let patches = (0..).zip(&self.touched);
+        let touched = patches.filter(|(_, touched)| **touched);
+        touched.map(|(patch, _)| patch).collect()
+    }
+
+    /// All elements of some patches.
+    fn elements_on(&self, patches: &[u32]) -> Vec<u32> {
+        let patches = patches.par_iter().with_min_len(64);
+        patches
+            .flat_map_iter(|patch| self.elements_of(&self.patch(*patch)))
             .collect()
     }
 
@@ -169,6 +183,20 @@ impl Mesh {
         })
     }
 
+    /// Finds the hanging vertices on some patches.
+    fn find_hanging(&mut self, patches: &[u32]) {
+        let elements = self.elements_on(patches).into_par_iter();
+        let other = |e: u32| {
+            let of = &self.elements[e as usize];
+            let hanging = self.hanging(of);
+            (hanging != of.hanging).then_some((e, hanging))
+        };
+        let others: Vec<_> = elements.with_min_len(1024).filter_map(other).collect();
+        for (element, hanging) in others {
+            self.elements[element as usize].hanging = hanging;
+        }
+    }
+
     /// The vertex in the middle of each side of a leaf, if there is one.
     fn hanging(&self, of: &Element) -> [u32; 4] {
         let mut hanging = [NONE; 4];
@@ -182,19 +210,17 @@ impl Mesh {
     /// Finds hanging vertices, takes in which of the vertices from `first` on are buried (those not spoken of are open), and weighs
     /// what has changed; to be called after splits, before light is interpolated.
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
-        let mut elements = std::mem::take(&mut self.elements);
-        let touched = elements.par_iter_mut().with_min_len(1024);
-        touched
-            .filter(|of| self.touched[of.patch as usize])
-            .for_each(|of| of.hanging = self.hanging(of));
-        self.elements = elements;
+        let touched = self.touched();
+        self.find_hanging(&touched);
         self.buried.truncate(first as usize);
         self.buried.extend_from_slice(buried);
         self.buried.resize(self.vertices.len(), false);
         self.plan_continuation();
         // From the first vertex on, all may have been buried or dug out.
-        let changed = |patch: &u32| first == 0 || self.touched[*patch as usize];
-        let changed: Vec<u32> = (0..self.patches.len() as u32).filter(changed).collect();
+        let changed = match first {
+            0 => (0..self.patches.len() as u32).collect(),
+            _ => touched,
+        };
         self.integrate(&changed);
         self.touched.fill(false);
     }

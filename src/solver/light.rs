@@ -73,13 +73,30 @@ impl Light {
 
     /// Unshot power of one sign of a patch, in W times the square of the frame's scale, ≥ 0.
     pub fn unshot_power(&self, mesh: &Mesh, patch: usize, sign: Sign) -> Power {
+        let [positive, negative] = self.unshot_by_sign(mesh, patch);
+        match sign {
+            Sign::Positive => positive,
+            Sign::Negative => negative,
+        }
+    }
+
+    /// That of a patch by sign, in the order of [`Sign::ALL`].
+    pub(super) fn unshot_by_sign(&self, mesh: &Mesh, patch: usize) -> [Power; 2] {
+        let mut received = [Power::ZERO; 2];
+        for v in mesh.vertices_of(patch as u32) {
+            let (unshot, weight) = (self.unshot[v as usize], mesh.weights[v as usize]);
+            for (sum, sign) in received.iter_mut().zip(Sign::ALL) {
+                *sum += sign.part(unshot).as_dvec3() * weight;
+            }
+        }
         let of = mesh.patches.at(patch);
-        let received: Power = mesh
-            .vertices_of(patch as u32)
-            .map(|v| sign.part(self.unshot[v as usize]).as_dvec3() * mesh.weights[v as usize])
-            .sum();
-        let own = sign.part(self.exitance_unshot[patch]).as_dvec3() * of.area;
-        own + of.reflectance.as_dvec3() * received
+        let own = self.exitance_unshot[patch];
+        // Hardly any patch emits, and what is asked of the others is not their area.
+        let area = if own == Spectrum::ZERO { 0.0 } else { of.area };
+        [0, 1].map(|sign| {
+            let own = Sign::ALL[sign].part(own).as_dvec3() * area;
+            own + of.reflectance.as_dvec3() * received[sign]
+        })
     }
 
     /// Whether all that a patch has unshot of one sign is its own.

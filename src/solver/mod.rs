@@ -30,6 +30,7 @@ mod sheets;
 mod shoot;
 mod shot;
 mod source;
+mod sums;
 mod tiling;
 #[cfg(test)]
 mod trial;

@@ -5,13 +5,14 @@ use super::behind::Surfaces;
 use super::burial::buried;
 use super::course::{Bounce, Course, Stage};
 use super::ledger::Ledger;
-use super::light::{Light, Sign};
+use super::light::Light;
 use super::neighbourhoods::Neighbourhoods;
 use super::observer::{Control, Observer, Progress};
 use super::options::Options;
 use super::outcome::{Outcome, StopReason};
 use super::parts::{Laps, Parts};
 use super::shoot::Shooter;
+use super::sums::in_order;
 use super::tiling::Tiling;
 use super::volley::{side_by_side, strongest};
 use super::wave::EARLY;
@@ -41,8 +42,8 @@ pub struct Solver<'a> {
     pub(super) reference: f64,
     /// What all patches emit, W times the square of the frame's scale.
     emitted: Power,
-    /// What was unshot when that was last counted, for who watches.
-    unshot: Option<Power>,
+    /// What was unshot, by sign, when that was last counted.
+    unshot: Option<[Power; 2]>,
     /// What the solve took before it was taken up again.
     spent: Duration,
     started: Instant,
@@ -153,7 +154,8 @@ impl<'a> Solver<'a> {
             return StopReason::NoEmitter;
         }
         loop {
-            if observer.progress(&self.progress()) == Control::Stop {
+            let unshot = self.count_unshot();
+            if observer.progress(&self.progress(unshot)) == Control::Stop {
                 return StopReason::Interrupted;
             }
             let elapsed = self.elapsed();
@@ -164,12 +166,12 @@ impl<'a> Solver<'a> {
             let part = part(&self.course.stage);
             match std::mem::take(&mut self.course.stage) {
                 Stage::Shooting => {
-                    if let Some(reason) = self.shoot(None) {
+                    if let Some(reason) = self.shoot(unshot, None) {
                         return reason;
                     }
                 }
                 Stage::Bounced(bounce) => {
-                    if let Some(reason) = self.shoot(Some(bounce)) {
+                    if let Some(reason) = self.shoot(unshot, Some(bounce)) {
                         self.course.stage = Stage::Bounced(bounce);
                         return reason;
                     }
@@ -187,17 +189,16 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// One shot, the gathering if enough has been shot, or a reason to do neither; after a `bounce` the gathering may begin earlier.
-    fn shoot(&mut self, bounce: Option<Bounce>) -> Option<StopReason> {
-        let powers = self.unshot_powers();
+    /// One shot, the gathering if enough of what is `unshot`, by sign, has been shot, or a reason to do neither; after a `bounce` the
+    /// gathering may begin earlier.
+    fn shoot(&mut self, unshot: [Power; 2], bounce: Option<Bounce>) -> Option<StopReason> {
         let emitted = self.emitted().element_sum();
-        let unshot: Power = powers.iter().sum();
-        self.laps.lap(|parts| &mut parts.selecting);
         let early = match bounce {
             Some(_) if self.options.regather && self.is_clustered() => EARLY,
             _ => 1.0,
         };
-        if unshot.element_sum() <= early * self.options.tolerance * emitted {
+        let all: Power = unshot.iter().sum();
+        if all.element_sum() <= early * self.options.tolerance * emitted {
             match (self.options.regather, self.is_clustered()) {
                 (false, _) => self.course.stage = Stage::Finished,
                 (true, false) => self.course.stage = Stage::Gathering(self.gathering()),
@@ -210,12 +211,12 @@ impl<'a> Solver<'a> {
             return Some(StopReason::MaxShots);
         }
         if self.is_clustered() {
-            self.begin_wave(&powers, bounce);
+            self.begin_wave(unshot, bounce);
             return None;
         }
         let left = self.options.max_shots.map_or(u64::MAX, |most| most - shots);
         let most = usize::try_from(left).unwrap_or(usize::MAX);
-        let givers = strongest(&powers, most.min(side_by_side(&self.mesh)));
+        let givers = strongest(&self.unshot_powers(), most.min(side_by_side(&self.mesh)));
         self.laps.lap(|parts| &mut parts.selecting);
         let strongest = givers[0];
         let power = strongest.power / emitted;
@@ -234,17 +235,25 @@ impl<'a> Solver<'a> {
 
     /// By patch, first the positive, then the negative.
     pub(super) fn unshot_powers(&self) -> Vec<Power> {
-        let power = |of: usize| {
-            let (patch, sign) = (of / 2, Sign::ALL[of % 2]);
-            self.light.unshot_power(&self.mesh, patch, sign)
-        };
-        let count = 2 * self.mesh.patches.len();
-        (0..count).into_par_iter().map(power).collect()
+        let of_patch = |patch| self.light.unshot_by_sign(&self.mesh, patch);
+        let patches = (0..self.mesh.patches.len()).into_par_iter();
+        patches.flat_map_iter(of_patch).collect()
+    }
+
+    /// What all patches have unshot: the positive, and the negative.
+    pub(super) fn unshot_by_sign(&self) -> [Power; 2] {
+        let mut unshot = [Power::ZERO; 2];
+        let of_patch = |patch| self.light.unshot_by_sign(&self.mesh, patch);
+        in_order(self.mesh.patches.len(), of_patch, |[positive, negative]| {
+            unshot[0] += positive;
+            unshot[1] += negative;
+        });
+        unshot
     }
 
     /// What all patches have unshot, the negative subtracted.
     pub(super) fn unshot(&self) -> Power {
-        let [positive, negative] = by_sign(&self.unshot_powers());
+        let [positive, negative] = self.unshot_by_sign();
         positive - negative
     }
 
@@ -252,12 +261,17 @@ impl<'a> Solver<'a> {
         self.emitted
     }
 
-    fn progress(&mut self) -> Progress {
+    /// What is unshot, by sign.
+    fn count_unshot(&mut self) -> [Power; 2] {
         // Until a wave, or all light, has arrived everywhere, the light is what it was.
         let stays = matches!(self.course.stage, Stage::Waving(_) | Stage::Gathering(_));
         let known = self.unshot.filter(|_| stays);
-        let unshot = known.unwrap_or_else(|| self.unshot_powers().iter().sum());
+        let unshot = known.unwrap_or_else(|| self.unshot_by_sign());
         self.unshot = Some(unshot);
+        unshot
+    }
+
+    fn progress(&self, unshot: [Power; 2]) -> Progress {
         Progress {
             phase: self.course.phase(&self.mesh),
             shots: self.course.shots,
@@ -266,7 +280,7 @@ impl<'a> Solver<'a> {
             vertices: self.mesh.vertices.len(),
             rays: self.course.rays,
             emitted: self.emitted() * self.square_metres,
-            unshot: unshot * self.square_metres,
+            unshot: unshot.iter().sum::<Power>() * self.square_metres,
             elapsed: self.elapsed(),
         }
     }
@@ -286,9 +300,4 @@ fn part(stage: &Stage) -> fn(&mut Parts) -> &mut f64 {
             |parts| &mut parts.shooting
         }
     }
-}
-
-/// The positive of all unshot powers together, and the negative.
-pub(super) fn by_sign(powers: &[Power]) -> [Power; 2] {
-    [0, 1].map(|sign| powers.iter().skip(sign).step_by(2).sum())
 }

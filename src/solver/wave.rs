@@ -10,7 +10,7 @@ use super::escape::Lost;
 use super::groups::{Groups, Member};
 use super::light::Sign;
 use super::observer::Phase;
-use super::run::{Solver, by_sign};
+use super::run::Solver;
 use super::shoot::{Beam, Shooter, evaluate, receiver_at};
 use super::tiling::Tiling;
 use crate::form_factor::Gather;
@@ -79,9 +79,8 @@ impl<'a> Solver<'a> {
         self.options.clusters(&self.mesh)
     }
 
-    /// All that is unshot of the stronger sign sets out.
-    pub(super) fn begin_wave(&mut self, powers: &[Power], after: Option<Bounce>) {
-        let unshot = by_sign(powers);
+    /// All that is `unshot`, by sign, of the stronger one sets out.
+    pub(super) fn begin_wave(&mut self, unshot: [Power; 2], after: Option<Bounce>) {
         let of = unshot.map(Power::element_sum);
         let stronger = if of[0] >= of[1] { 0 } else { 1 };
         let (sign, sent) = (Sign::ALL[stronger], unshot[stronger]);

@@ -1,0 +1,22 @@
+//! Sums over all of a large mesh. Their terms are found side by side and added one after the other, so that the bits are those of a plain
+//! loop, with any number of threads.
+
+use rayon::prelude::*;
+
+/// Terms that are found before any of them is added: all at once would be as large a list as those that the mesh is made of.
+const BLOCK: usize = 1 << 15;
+
+/// Finds each of `count` terms, and lets `add` have them in order.
+pub(super) fn in_order<T: Send>(
+    count: usize,
+    term: impl Fn(usize) -> T + Sync,
+    mut add: impl FnMut(T),
+) {
+    let mut terms = Vec::new();
+    for first in (0..count).step_by(BLOCK) {
+        let block = first..count.min(first + BLOCK);
+        let found = block.into_par_iter().with_min_len(1024).map(&term);
+        found.collect_into_vec(&mut terms);
+        terms.drain(..).for_each(&mut add);
+    }
+}
