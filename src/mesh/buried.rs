@@ -5,9 +5,10 @@
 //! covers in part. So buried vertices are not evaluated; light is continued to them from the open vertices around, and
 //! they have no weight when it is integrated.
 
-use super::{Mesh, NONE};
+use super::Mesh;
 use crate::radiometry::Spectrum;
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// How light is continued to the buried vertices of a mesh.
 #[derive(Debug, Clone, Default)]
@@ -40,55 +41,60 @@ impl Mesh {
 
     /// Plans the continuation: ring by ring from the open vertices, along the edges of the fans.
     pub(super) fn plan_continuation(&mut self) {
-        self.continuation = Continuation::default();
-        if !self.buried.contains(&true) {
-            return;
+        let edges = self.edges_from_buried();
+        let is_open = |vertex: &u32| !self.buried[*vertex as usize];
+        let beside = |vertex: u32| {
+            let first = edges.partition_point(|(from, _)| *from < vertex);
+            let edges = edges[first..].iter();
+            let edges = edges.take_while(move |(from, _)| *from == vertex);
+            edges.map(|(_, to)| *to)
+        };
+        let mut plan = Continuation::default();
+        let mut filled = FxHashSet::default();
+        let outermost = edges.iter().filter(|(_, to)| is_open(to));
+        let mut ring: Vec<u32> = outermost.map(|(from, _)| *from).collect();
+        ring.dedup();
+        while !ring.is_empty() {
+            for vertex in &ring {
+                let known = beside(*vertex).filter(|v| is_open(v) || filled.contains(v));
+                plan.sources.extend(known);
+                plan.steps.push((*vertex, plan.sources.len() as u32));
+            }
+            filled.extend(ring.iter().copied());
+            let further = ring.iter().flat_map(|vertex| beside(*vertex));
+            let mut further: Vec<u32> = further
+                .filter(|v| !is_open(v) && !filled.contains(v))
+                .collect();
+            further.sort_unstable();
+            further.dedup();
+            ring = further;
         }
+        self.continuation = plan;
+    }
+
+    /// The edges of all fans from their buried ends, in order.
+    fn edges_from_buried(&self) -> Vec<(u32, u32)> {
         let is_buried = |vertex: &u32| self.buried[*vertex as usize];
+        let numbered = (0..).zip(&self.vertices);
+        let buried = numbered.filter(|(number, _)| is_buried(number));
+        let mut patches: Vec<u32> = buried.map(|(_, vertex)| vertex.patch).collect();
+        patches.sort_unstable();
+        patches.dedup();
         let edges_of = |leaf: u32| {
-            let of = &self.elements[leaf as usize];
-            let hanging = of.hanging.iter().filter(|v| **v != NONE);
-            let any = of.vertices().any(|v| is_buried(&v)) || hanging.clone().any(is_buried);
-            let fan = any.then(|| self.fan(leaf)).into_iter().flatten();
-            fan.flat_map(|[centre, a, b]| [(centre, a), (a, b), (b, centre)])
+            let edges = self
+                .fan(leaf)
+                .flat_map(|[centre, a, b]| [(centre, a), (a, b), (b, centre)]);
+            edges
                 .flat_map(|(from, to)| [(from, to), (to, from)])
                 .filter(|(from, _)| is_buried(from))
         };
-        let mut edges: Vec<(u32, u32)> = (0..self.elements.len() as u32)
-            .into_par_iter()
-            .with_min_len(1024)
-            .filter(|e| self.elements[*e as usize].is_leaf())
-            .flat_map_iter(edges_of)
-            .collect();
-        edges.sort_unstable();
+        let elements = self.elements_on(&patches).into_par_iter();
+        let is_leaf = |e: &u32| self.elements[*e as usize].is_leaf();
+        let leaves = elements.with_min_len(1024).filter(is_leaf);
+        let edges = leaves.flat_map_iter(edges_of);
+        let mut edges: Vec<(u32, u32)> = edges.collect();
+        edges.par_sort_unstable();
         edges.dedup();
-        let mut ring: Vec<u32> = self
-            .buried
-            .iter()
-            .map(|buried| if *buried { NONE } else { 0 })
-            .collect();
-        for current in 1.. {
-            let before = self.continuation.steps.len();
-            for group in edges.chunk_by(|a, b| a.0 == b.0) {
-                let vertex = group[0].0;
-                if ring[vertex as usize] == NONE {
-                    let known = group
-                        .iter()
-                        .map(|(_, other)| *other)
-                        .filter(|other| ring[*other as usize] < current);
-                    let count = self.continuation.sources.len();
-                    self.continuation.sources.extend(known);
-                    if self.continuation.sources.len() > count {
-                        ring[vertex as usize] = current;
-                        self.continuation
-                            .steps
-                            .push((vertex, self.continuation.sources.len() as u32));
-                    }
-                }
-            }
-            if self.continuation.steps.len() == before {
-                return;
-            }
-        }
+        edges
     }
 }

@@ -71,7 +71,7 @@ pub struct Mesh {
     buried_weights: FxHashMap<u32, f64>,
     continuation: buried::Continuation,
     weld: weld::Weld,
-    /// Patches that were split since hanging vertices were last found.
+    /// Patches that have changed since hanging vertices were last found and vertices weighed.
     touched: Vec<bool>,
     /// The vertices that a patch got after those of its coarsest grid, which follow one another, if it got any.
     later: FxHashMap<u32, Vec<u32>>,
@@ -139,14 +139,14 @@ impl Mesh {
 
     /// The vertices of a patch, in the order of their making.
     pub fn vertices_of(&self, patch: u32) -> impl Iterator<Item = u32> + Clone + '_ {
-        self.patch(patch)
-            .first_vertices()
-            .chain(self.later_of(patch))
+        let first = self.patches.first_vertices(patch as usize);
+        first.chain(self.later_of(patch))
     }
 
     /// How many vertices a patch has.
     pub fn vertex_count(&self, patch: u32) -> usize {
-        self.patch(patch).first_vertices().len() + self.later_of(patch).len()
+        let first = self.patches.first_vertices(patch as usize);
+        first.len() + self.later_of(patch).len()
     }
 
     fn later_of(&self, patch: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
@@ -160,12 +160,14 @@ impl Mesh {
             return self.at.get(&(patch, lattice)).copied();
         }
         let is_there = |v: &u32| self.vertices[*v as usize].lattice == lattice;
-        self.patch(patch).first_vertices().find(is_there)
+        let mut first = self.patches.first_vertices(patch as usize);
+        first.find(is_there)
     }
 
     /// Whether a patch has more than [`FEW`] vertices.
     fn is_indexed(&self, patch: u32) -> bool {
-        self.patch(patch).first_vertices().len() > FEW || self.later.contains_key(&patch)
+        let first = self.patches.first_vertices(patch as usize);
+        first.len() > FEW || self.later.contains_key(&patch)
     }
 
     /// Takes a vertex into the index.
@@ -198,7 +200,7 @@ impl Mesh {
     fn point_on(&self, patch: &Patch, of: &Vertex) -> DVec3 {
         let position = patch.position(of.lattice);
         if patch.on_border(of.lattice) {
-            self.inwards(of.maker, position)
+            self.inwards(patch, of.maker, position)
         } else {
             position
         }

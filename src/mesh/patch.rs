@@ -83,13 +83,7 @@ impl Patch {
 
     /// The vertices of its coarsest grid.
     pub fn first_vertices(&self) -> Range<u32> {
-        let (columns, rows) = self.grid;
-        let count = if self.is_triangle() {
-            4
-        } else {
-            (columns + 1) * (rows + 1) + columns * rows
-        };
-        self.first_vertex..self.first_vertex + count
+        self.first_vertex..self.first_vertex + vertices_in(self.is_triangle(), self.grid)
     }
 
     /// Whether it has three corners.
@@ -172,5 +166,14 @@ impl Patch {
         } else {
             low(u).then_some(3)
         }
+    }
+}
+
+/// How many vertices the coarsest grid of a patch has.
+pub(super) fn vertices_in(triangle: bool, (columns, rows): (u32, u32)) -> u32 {
+    if triangle {
+        4
+    } else {
+        (columns + 1) * (rows + 1) + columns * rows
     }
 }

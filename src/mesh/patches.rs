@@ -2,11 +2,13 @@
 //! the same for many, would take most of the memory.
 
 use super::Patch;
+use super::patch::vertices_in;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::hash::Hash;
+use std::ops::Range;
 
 /// No grid has more columns or rows than this.
 pub(super) const MOST_ALONG: u32 = 1 << 10;
@@ -55,7 +57,7 @@ impl Patches {
         self.records.is_empty()
     }
 
-    /// The patch with a number. Who asks for a part of it pays for no more if this is compiled where it is asked for.
+    /// The patch with a number. Who asks for a part of it pays for little more if this is compiled where it is asked for.
     #[inline(always)]
     pub fn at(&self, number: usize) -> Patch {
         let of = &self.records[number];
@@ -72,6 +74,20 @@ impl Patches {
             first_vertex: of.first_vertex,
             ..Patch::new(of.surface, of.polygon, &corners[..count], of.back)
         }
+    }
+
+    /// The reflectance of that.
+    #[inline]
+    pub fn reflectance(&self, number: usize) -> Spectrum {
+        self.colours[self.records[number].colours as usize][0]
+    }
+
+    /// The vertices of its coarsest grid.
+    #[inline]
+    pub(super) fn first_vertices(&self, number: usize) -> Range<u32> {
+        let of = &self.records[number];
+        let [columns, rows] = of.grid.map(u32::from);
+        of.first_vertex..of.first_vertex + vertices_in(of.is_triangle, (columns, rows))
     }
 
     /// All of them, in order.

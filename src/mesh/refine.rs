@@ -19,7 +19,8 @@ const MOST_INWARDS: f64 = 0.15;
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
-        let (corners, count) = self.corner_positions(&self.elements[element as usize]);
+        let of = &self.elements[element as usize];
+        let (corners, count) = self.corner_positions(&self.patch(of.patch), of);
         let square = |i: usize| corners[i].distance_squared(corners[(i + 1) % count]);
         (0..count).map(square).fold(0.0, f64::max).sqrt()
     }
@@ -97,7 +98,7 @@ impl Mesh {
             return vertex;
         }
         if !self.is_indexed(patch) {
-            let first = self.patch(patch).first_vertices();
+            let first = self.patches.first_vertices(patch as usize);
             first.for_each(|v| self.index(v));
         }
         let vertex = self.make_vertex(patch, lattice);
@@ -116,11 +117,11 @@ impl Mesh {
         self.vertices.len() as u32 - 1
     }
 
-    /// A position on the border of a patch, moved towards the centre of an element.
-    pub(super) fn inwards(&self, element: u32, position: DVec3) -> DVec3 {
+    /// A position on the border of a patch, moved towards the centre of one of its elements.
+    pub(super) fn inwards(&self, patch: &Patch, element: u32, position: DVec3) -> DVec3 {
         let of = &self.elements[element as usize];
-        let (corners, count) = self.corner_positions(of);
-        let centre = self.position(of.centre);
+        let (corners, count) = self.corner_positions(patch, of);
+        let centre = patch.position(self.vertices[of.centre as usize].lattice);
         let depth = |i: usize| {
             let [a, b] = [i, (i + 1) % count].map(|i| corners[i]);
             (b - a).normalize_or_zero().cross(centre - a).length()
@@ -130,9 +131,8 @@ impl Mesh {
         position.lerp(centre, clear.clamp(INWARDS, MOST_INWARDS))
     }
 
-    /// The positions of the corners of an element, and how many there are.
-    fn corner_positions(&self, of: &Element) -> ([DVec3; 4], usize) {
-        let patch = self.patch(of.patch);
+    /// The positions of the corners of an element of a patch, and how many there are.
+    fn corner_positions(&self, patch: &Patch, of: &Element) -> ([DVec3; 4], usize) {
         let mut corners = [DVec3::ZERO; 4];
         for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
             *corner = patch.position(self.vertices[*vertex as usize].lattice);
@@ -153,7 +153,7 @@ impl Mesh {
         unbalanced
     }
 
-    /// The patches that were split since hanging vertices were last found: few, when a mesh is nearly done.
+    /// The patches that have changed since vertices were last weighed: few, when a mesh is nearly done.
     fn touched(&self) -> Vec<u32> {
         let patches = (0..).zip(&self.touched);
         let touched = patches.filter(|(_, touched)| **touched);
@@ -161,7 +161,7 @@ impl Mesh {
     }
 
     /// All elements of some patches.
-    fn elements_on(&self, patches: &[u32]) -> Vec<u32> {
+    pub(super) fn elements_on(&self, patches: &[u32]) -> Vec<u32> {
         let patches = patches.par_iter().with_min_len(64);
         patches
             .flat_map_iter(|patch| self.elements_of(&self.patch(*patch)))
@@ -212,16 +212,17 @@ impl Mesh {
     pub fn finish_topology(&mut self, first: u32, buried: &[bool]) {
         let touched = self.touched();
         self.find_hanging(&touched);
-        self.buried.truncate(first as usize);
-        self.buried.extend_from_slice(buried);
         self.buried.resize(self.vertices.len(), false);
+        let buried = buried.iter().copied().chain(std::iter::repeat(false));
+        for (vertex, now) in (first as usize..self.vertices.len()).zip(buried) {
+            if self.buried[vertex] != now {
+                self.buried[vertex] = now;
+                self.touched[self.vertices[vertex].patch as usize] = true;
+            }
+        }
         self.plan_continuation();
-        // From the first vertex on, all may have been buried or dug out.
-        let changed = match first {
-            0 => (0..self.patches.len() as u32).collect(),
-            _ => touched,
-        };
-        self.integrate(&changed);
+        let touched = self.touched();
+        self.integrate(&touched);
         self.touched.fill(false);
     }
 }

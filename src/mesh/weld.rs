@@ -49,12 +49,13 @@ impl Mesh {
     fn weld(&mut self) {
         let mut sites = Sets::new(self.vertices.len());
         let sides = Sides::new(self, |patch, side| patch.side_key(side).0);
-        for sides in sides.list.chunk_by(|a, b| sides.are_one(a, b)) {
-            for [a, b] in self.smooth_ends(sides) {
-                sites.join(a, b);
-            }
-        }
+        let shared = sides.list.par_chunk_by(|a, b| sides.are_one(a, b));
+        let ends = shared.flat_map_iter(|sides| self.smooth_ends(sides));
+        let ends: Vec<[u32; 2]> = ends.collect();
         drop(sides);
+        for [a, b] in ends {
+            sites.join(a, b);
+        }
         let mut weld = Weld {
             leader: (0..self.vertices.len() as u32).collect(),
             ..Weld::default()
@@ -95,18 +96,17 @@ impl Mesh {
 
     /// Where a vertex receives, and the normal with which it does.
     pub fn receiver(&self, vertex: u32) -> (DVec3, DVec3) {
+        if let Some((point, normal)) = self.site(vertex) {
+            return (*point, normal.as_dvec3());
+        }
         let of = &self.vertices[vertex as usize];
         let patch = self.patch(of.patch);
-        if self.weld.sites.is_empty() {
-            return (self.point_on(&patch, of), patch.normal);
-        }
-        match self.site(vertex) {
-            Some((point, normal)) => (*point, normal.as_dvec3()),
-            None => (
-                self.point_on(&patch, of),
-                self.interpolated_normal(&patch, of.patch, of.lattice),
-            ),
-        }
+        let normal = if self.weld.sites.is_empty() {
+            patch.normal
+        } else {
+            self.interpolated_normal(&patch, of.patch, of.lattice)
+        };
+        (self.point_on(&patch, of), normal)
     }
 
     fn site(&self, vertex: u32) -> Option<&(DVec3, Vec3)> {
