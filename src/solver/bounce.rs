@@ -12,6 +12,7 @@ use super::light::Sign;
 use super::neighbourhoods::{Neighbourhoods, drawn};
 use super::run::Solver;
 use super::shoot::{Beam, evaluate, receiver_at};
+use super::sums::in_order;
 use crate::form_factor::Gather;
 use crate::mesh::NONE;
 use crate::radiometry::{Power, Spectrum};
@@ -80,11 +81,12 @@ impl Solver<'_> {
 
     /// By how much what arrived falls short of what was sent and not lost.
     fn closing(&self, sent: Power, arrived: &[Gather], near: &Neighbourhoods) -> Spectrum {
-        let of = near.of.iter().zip(&self.mesh.weights);
-        let powers = of
-            .filter(|(near, _)| **near != NONE)
-            .map(|(near, weight)| arrived[*near as usize].irradiance.as_dvec3() * *weight);
-        let came: Power = powers.sum();
+        let power = |vertex: usize| match near.of[vertex] {
+            NONE => Power::ZERO,
+            near => arrived[near as usize].irradiance.as_dvec3() * self.mesh.weights[vertex],
+        };
+        let mut came = Power::ZERO;
+        in_order(near.of.len(), power, |power| came += power);
         let ratio = sent / came.max(Power::splat(f64::MIN_POSITIVE));
         let bounds = [1.0 / MOST_CLOSING, MOST_CLOSING].map(Power::splat);
         ratio.clamp(bounds[0], bounds[1]).as_vec3()

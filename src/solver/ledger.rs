@@ -1,9 +1,10 @@
 //! Where the power went.
 
 use super::escape::Lost;
+use super::light::Light;
+use super::sums::in_order;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
-use crate::solver::{Light, Sign};
 
 /// The balance of a solve, W per channel: emitted = absorbed + escaped + unshot + residual.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,19 +34,23 @@ impl Ledger {
             onto_backs: lost.onto_backs * square_metres,
             ..Self::default()
         };
-        for (number, patch) in mesh.patches.iter().enumerate() {
+        let of_patch = |number: usize| {
+            let patch = mesh.patches.at(number);
             let received: Power = mesh
                 .vertices_of(number as u32)
                 .map(|v| light.irradiance[v as usize].as_dvec3() * mesh.weights[v as usize])
                 .sum();
-            ledger.emitted += patch.exitance.as_dvec3() * patch.area * square_metres;
-            ledger.absorbed +=
-                (Power::ONE - patch.reflectance.as_dvec3()) * received * square_metres;
-            for sign in Sign::ALL {
-                let power = light.unshot_power(mesh, number, sign) * f64::from(sign.factor());
-                ledger.unshot += power * square_metres;
-            }
-        }
+            let emitted = patch.exitance.as_dvec3() * patch.area;
+            let absorbed = (Power::ONE - patch.reflectance.as_dvec3()) * received;
+            (emitted, absorbed, light.unshot_by_sign(mesh, number))
+        };
+        let add = |(emitted, absorbed, [positive, negative]): (Power, Power, [Power; 2])| {
+            ledger.emitted += emitted * square_metres;
+            ledger.absorbed += absorbed * square_metres;
+            ledger.unshot += positive * square_metres;
+            ledger.unshot -= negative * square_metres;
+        };
+        in_order(mesh.patches.len(), of_patch, add);
         ledger
     }
 }

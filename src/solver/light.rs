@@ -68,7 +68,7 @@ impl Light {
     pub fn unshot_radiosity(&self, mesh: &Mesh, vertex: u32, sign: Sign) -> Spectrum {
         let patch = mesh.vertices[vertex as usize].patch as usize;
         sign.part(self.exitance_unshot[patch])
-            + mesh.patches.at(patch).reflectance * sign.part(self.unshot[vertex as usize])
+            + mesh.patches.reflectance(patch) * sign.part(self.unshot[vertex as usize])
     }
 
     /// Unshot power of one sign of a patch, in W times the square of the frame's scale, ≥ 0.
@@ -89,13 +89,16 @@ impl Light {
                 *sum += sign.part(unshot).as_dvec3() * weight;
             }
         }
-        let of = mesh.patches.at(patch);
+        let reflectance = mesh.patches.reflectance(patch).as_dvec3();
         let own = self.exitance_unshot[patch];
-        // Hardly any patch emits, and what is asked of the others is not their area.
-        let area = if own == Spectrum::ZERO { 0.0 } else { of.area };
+        // Hardly any patch emits: the others are not asked for their area, which takes longer than all the rest.
+        let area = match own {
+            Spectrum::ZERO => 0.0,
+            _ => mesh.patches.at(patch).area,
+        };
         [0, 1].map(|sign| {
             let own = Sign::ALL[sign].part(own).as_dvec3() * area;
-            own + of.reflectance.as_dvec3() * received[sign]
+            own + reflectance * received[sign]
         })
     }
 

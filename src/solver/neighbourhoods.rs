@@ -107,7 +107,8 @@ impl Neighbourhoods {
     /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
     pub fn divided(self, mesh: &Mesh, direct: &[Spectrum]) -> Self {
         let reflected = |vertex: u32| {
-            let reflectance = mesh.patch(mesh.vertices[vertex as usize].patch).reflectance;
+            let patch = mesh.vertices[vertex as usize].patch as usize;
+            let reflectance = mesh.patches.reflectance(patch);
             f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
         };
         let all: f64 = self.lists.vertices.iter().map(|v| reflected(*v)).sum();

@@ -85,24 +85,29 @@ impl<'a> Solver<'a> {
         spent: Duration,
     ) -> Self {
         mesh.weld_if(options.clusters(&mesh));
-        let area: f64 = mesh.patches.iter().map(|p| p.area).sum();
-        let emitted: f64 = mesh
-            .patches
-            .iter()
-            .map(|p| f64::from(p.exitance.max_element()) * p.area)
-            .sum();
+        let of_patch = |number: usize| {
+            let patch = mesh.patches.at(number);
+            let brightest = f64::from(patch.exitance.max_element()) * patch.area;
+            (
+                patch.area,
+                brightest,
+                patch.exitance.as_dvec3() * patch.area,
+            )
+        };
+        let (mut area, mut brightest, mut emitted) = (0.0, 0.0, Power::ZERO);
+        in_order(mesh.patches.len(), of_patch, |of| {
+            area += of.0;
+            brightest += of.1;
+            emitted += of.2;
+        });
         Self {
             behind: Surfaces::new(scene, &mesh),
             tiling: None,
             radiated: None,
             neighbourhoods: None,
             square_metres: (scene.metres_per_unit / mesh.frame.scale()).powi(2),
-            emitted: mesh
-                .patches
-                .iter()
-                .map(|p| p.exitance.as_dvec3() * p.area)
-                .sum(),
-            reference: if area > 0.0 { emitted / area } else { 0.0 },
+            emitted,
+            reference: if area > 0.0 { brightest / area } else { 0.0 },
             mesh,
             light,
             course,

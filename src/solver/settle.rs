@@ -9,6 +9,7 @@ use super::bounce::MOST_RATIO;
 use super::course::{Bounce, Shot, Stage};
 use super::light::{Light, Sign};
 use super::run::Solver;
+use super::sums::in_order;
 use super::tiling::Tiling;
 use super::wave::{Kind, Wave};
 use crate::radiometry::Spectrum;
@@ -66,13 +67,15 @@ impl Solver<'_> {
         self.course.lost = self.escape_of_all(all, wave.power);
         let direct = self.course.direct.take().unwrap_or_default();
         self.course.lost += direct.lost;
-        let light = self.light.irradiance.iter_mut().zip(&mut self.light.unshot);
-        for (vertex, (irradiance, unshot)) in light.enumerate() {
+        let light = self.light.irradiance.par_iter_mut();
+        let light = light.zip(&mut self.light.unshot).zip(&wave.arrived);
+        let light = light.enumerate().with_min_len(4096);
+        light.for_each(|(vertex, ((irradiance, unshot), arrived))| {
             let sent = reflected(*irradiance, *unshot, prospect);
             let direct = direct.irradiance.get(vertex).copied().unwrap_or_default();
-            *irradiance = wave.arrived[vertex].irradiance + direct;
+            *irradiance = arrived.irradiance + direct;
             *unshot = *irradiance - sent;
-        }
+        });
         self.light.exitance_unshot.fill(Spectrum::ZERO);
         let shot = self.arrived(wave, Sign::Positive, self.course.meshing_ended.is_none());
         self.course.stage = Stage::Settling(shot);
@@ -96,12 +99,16 @@ impl Solver<'_> {
     fn sent_sum(&self) -> Option<Span> {
         let (mesh, light) = (&self.mesh, &self.light);
         let (mut arrived, mut sent) = (self.course.lost.all, self.emitted());
-        for (vertex, weight) in mesh.weights.iter().enumerate() {
-            let patch = mesh.patch(mesh.vertices[vertex].patch);
+        let at = |vertex: usize| {
+            let patch = mesh.vertices[vertex].patch as usize;
             let (irradiance, unshot) = (light.irradiance[vertex], light.unshot[vertex]);
-            arrived += irradiance.as_dvec3() * *weight;
-            sent += (patch.reflectance * (irradiance - unshot)).as_dvec3() * *weight;
-        }
+            let reflected = mesh.patches.reflectance(patch) * (irradiance - unshot);
+            [irradiance, reflected].map(|of| of.as_dvec3() * mesh.weights[vertex])
+        };
+        in_order(mesh.weights.len(), at, |[here, reflected]| {
+            arrived += here;
+            sent += reflected;
+        });
         let (arrived, sent) = (arrived.element_sum(), sent.element_sum());
         Span::of(std::iter::once((arrived / sent, sent)))
     }

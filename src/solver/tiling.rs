@@ -301,7 +301,7 @@ fn cuts(mesh: &Mesh) -> Vec<Option<Cut>> {
         let radiates = patch.reflectance != Spectrum::ZERO || patch.exitance != Spectrum::ZERO;
         radiates.then(|| Cut::of(&patch, longest))
     };
-    mesh.patches.iter().map(cut).collect()
+    mesh.patches.par_iter().map(cut).collect()
 }
 
 fn tile(patch: &Patch, cell: &Quad) -> Tile {

@@ -253,10 +253,12 @@ impl<'a> Solver<'a> {
 
     /// A wave that has arrived at the vertices that there are; if it `meshes`, all elements are to be tested.
     pub(super) fn arrived(&mut self, wave: Wave, sign: Sign, meshes: bool) -> Shot {
-        let candidates = self
-            .mesh
-            .leaves()
-            .filter(|e| meshes && self.options.may_split(&self.mesh, *e));
+        let may_split = |e: &u32| {
+            let is_leaf = self.mesh.elements[*e as usize].is_leaf();
+            meshes && is_leaf && self.options.may_split(&self.mesh, *e)
+        };
+        let elements = (0..self.mesh.elements.len() as u32).into_par_iter();
+        let candidates = elements.with_min_len(1024).filter(may_split);
         Shot {
             shooter: ALL,
             sign,
