@@ -25,6 +25,7 @@ use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Run, Settings, solve};
 use std::f64::consts::TAU;
+use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -344,11 +345,11 @@ fn bits(mut solution: Solution) -> Vec<u8> {
 }
 
 fn file(solution: &Solution) -> Vec<u8> {
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     solution
         .write(&mut bytes)
         .expect("memory can be written to");
-    bytes
+    bytes.into_inner()
 }
 
 /// nRMS difference of the irradiance at the middles of the elements, by area.

@@ -10,13 +10,16 @@ use crate::scene::Camera;
 use crate::solver::Light;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"RADIOSOL";
 const VERSION: u32 = 2;
 const HEADER: usize = 24;
+
+/// Bytes of the payload that are written at a time.
+const MANY: usize = 1 << 16;
 
 /// Why a solution file cannot be read.
 #[derive(Debug, Error)]
@@ -50,39 +53,25 @@ struct Stored<'a, M> {
     continuation: Cow<'a, Option<Continuation>>,
 }
 
-/// What the header says of the payload, found by writing it to nowhere: kept in memory, it would be the most that a solve of a large
-/// scene takes.
-#[derive(Default)]
-struct Tally {
+/// The payload on its way out, with what the header says of it. Keeps the reason when writing fails: the encoder only says that it could
+/// not go on.
+struct Payload<'a, W> {
+    out: &'a mut W,
     length: u64,
     checksum: crc32fast::Hasher,
-}
-
-impl Write for Tally {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.length += bytes.len() as u64;
-        self.checksum.update(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// A writer that keeps the reason when it fails: the encoder only says that it could not go on.
-struct Candid<'a, W> {
-    out: &'a mut W,
     failure: Option<io::Error>,
 }
 
-impl<W: Write> Write for Candid<'_, W> {
+impl<W: Write> Write for Payload<'_, W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.out.write(bytes).map_err(|reason| {
+        let written = self.out.write(bytes).map_err(|reason| {
             let kind = reason.kind();
             self.failure = Some(reason);
-            kind.into()
-        })
+            io::Error::from(kind)
+        })?;
+        self.length += written as u64;
+        self.checksum.update(&bytes[..written]);
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -91,8 +80,24 @@ impl<W: Write> Write for Candid<'_, W> {
 }
 
 impl Solution {
-    /// Writes the solution file's bytes.
-    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+    /// Writes the solution file's bytes, the header last: what it says of the payload is known when that is written.
+    pub fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
+        let begin = out.stream_position()?;
+        out.write_all(&[0; HEADER])?;
+        let (length, checksum) = self.write_payload(out)?;
+        let end = out.stream_position()?;
+        out.seek(SeekFrom::Start(begin))?;
+        out.write_all(MAGIC)?;
+        out.write_all(&VERSION.to_le_bytes())?;
+        out.write_all(&length.to_le_bytes())?;
+        out.write_all(&checksum.to_le_bytes())?;
+        out.seek(SeekFrom::Start(end))?;
+        Ok(())
+    }
+
+    /// Writes what follows the header; gives its length and its checksum. It is nowhere whole in memory: that would be the most that a solve
+    /// of a large scene takes.
+    fn write_payload(&self, out: &mut impl Write) -> io::Result<(u64, u32)> {
         let stored = Stored {
             report: serde_json::to_string(&self.report)?,
             cameras: Cow::Borrowed(&self.cameras),
@@ -101,16 +106,22 @@ impl Solution {
             light: Cow::Borrowed(&self.light),
             continuation: Cow::Borrowed(&self.continuation),
         };
-        let mut tally = BufWriter::new(Tally::default());
-        postcard::to_io(&stored, &mut tally).map_err(io::Error::other)?;
-        let Tally { length, checksum } = tally.into_inner()?;
-        out.write_all(MAGIC)?;
-        out.write_all(&VERSION.to_le_bytes())?;
-        out.write_all(&length.to_le_bytes())?;
-        out.write_all(&checksum.finalize().to_le_bytes())?;
-        let mut out = Candid { out, failure: None };
-        let encoded = postcard::to_io(&stored, &mut out).map(|_| ());
-        encoded.map_err(|e| out.failure.unwrap_or_else(|| io::Error::other(e)))
+        let mut payload = Payload {
+            out,
+            length: 0,
+            checksum: crc32fast::Hasher::new(),
+            failure: None,
+        };
+        // The encoder gives out a few bytes at a time, a checksum is for many.
+        let mut many = BufWriter::with_capacity(MANY, &mut payload);
+        let encoded = postcard::to_io(&stored, &mut many).map(|_| ());
+        let encoded = encoded.map_err(io::Error::other);
+        let encoded = encoded.and_then(|()| many.flush());
+        drop(many);
+        match (encoded, payload.failure) {
+            (Ok(()), _) => Ok((payload.length, payload.checksum.finalize())),
+            (Err(_), Some(reason)) | (Err(reason), None) => Err(reason),
+        }
     }
 
     /// Reads a solution file.

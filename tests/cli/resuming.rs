@@ -3,6 +3,7 @@
 use super::{Run, command, draft, folder, names, radiosity, scene, text};
 use radiosity::solution::{Seconds, Solution};
 use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 use std::process::Stdio;
 use std::thread::sleep;
@@ -19,11 +20,11 @@ fn bits(folder: &Path) -> Vec<u8> {
     let path = folder.join("solution.rad");
     let mut solution = Solution::read(&path).unwrap_or_else(|error| panic!("{error}"));
     solution.report.seconds = Seconds::default();
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     solution
         .write(&mut bytes)
         .expect("memory can be written to");
-    bytes
+    bytes.into_inner()
 }
 
 /// Starts a command and kills it after a while, if it has not ended by then. No signal that could be caught.

@@ -27,6 +27,7 @@ use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
 use std::collections::BTreeMap;
+use std::io::Cursor;
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// The engines that are there: obvhs always, Embree if it was built in.
@@ -81,11 +82,11 @@ fn bits(mut solution: Solution) -> Vec<u8> {
 }
 
 fn file(solution: &Solution) -> Vec<u8> {
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     solution
         .write(&mut bytes)
         .expect("memory can be written to");
-    bytes
+    bytes.into_inner()
 }
 
 fn draft() -> Options {

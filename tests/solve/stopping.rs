@@ -5,7 +5,7 @@ use super::{bundled, draft, file, solved};
 use radiosity::solution::Solution;
 use radiosity::solver::{Control, Observer, Options, Progress, StopReason};
 use radiosity::{Settings, solve};
-use std::io::{self, Write};
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::time::Duration;
 
 /// Everything that a solution promises, whatever the reason for its end.
@@ -21,11 +21,11 @@ fn assert_whole(solution: &Solution) {
             .iter()
             .all(|e| e.is_finite() && e.min_element() >= 0.0)
     );
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     solution
         .write(&mut bytes)
         .expect("memory can be written to");
-    let again = Solution::decode(&bytes).unwrap_or_else(|found| panic!("{found}"));
+    let again = Solution::decode(bytes.get_ref()).unwrap_or_else(|found| panic!("{found}"));
     assert_eq!(again.light, solution.light);
     assert_eq!(again.report.stop_reason, solution.report.stop_reason);
 }
@@ -184,21 +184,36 @@ fn progress_goes_forward() {
     );
 }
 
-/// A disk with so many bytes left.
-struct Disk(usize);
+/// A file on a disk with room for so many bytes.
+struct Disk {
+    file: Cursor<Vec<u8>>,
+    room: usize,
+}
+
+impl Disk {
+    fn with(room: usize) -> Self {
+        let file = Cursor::default();
+        Self { file, room }
+    }
+}
 
 impl Write for Disk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0 == 0 {
+        let left = self.room - self.file.position() as usize;
+        if left == 0 {
             return Err(io::ErrorKind::StorageFull.into());
         }
-        let taken = bytes.len().min(self.0);
-        self.0 -= taken;
-        Ok(taken)
+        self.file.write(&bytes[..bytes.len().min(left)])
     }
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+impl Seek for Disk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 
@@ -208,7 +223,7 @@ fn a_disk_that_fills_up_is_the_reason_wherever_it_does() {
     let length = file(&solution).len();
     for room in [0, 10, 24, 25, length / 2, length - 1] {
         let error = solution
-            .write(&mut Disk(room))
+            .write(&mut Disk::with(room))
             .expect_err("there is no room");
         assert_eq!(
             error.kind(),
@@ -217,6 +232,6 @@ fn a_disk_that_fills_up_is_the_reason_wherever_it_does() {
         );
     }
     solution
-        .write(&mut Disk(length))
+        .write(&mut Disk::with(length))
         .expect("there is room for all of it");
 }

@@ -15,7 +15,7 @@ fuzz_target!(|data: &[u8]| {
         let at = lit.positions[vertex.position as usize];
         let _ = Prober::new(&solution).probe(at, vertex.normal.as_dvec3());
     }
-    let mut bytes = Vec::new();
+    let mut bytes = std::io::Cursor::new(Vec::new());
     solution.write(&mut bytes).expect("memory can be written to");
-    Solution::decode(&bytes).expect("was just written");
+    Solution::decode(bytes.get_ref()).expect("was just written");
 });

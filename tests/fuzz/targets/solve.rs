@@ -39,8 +39,8 @@ fuzz_target!(|data: &[u8]| {
     for light in &solution.light.irradiance {
         assert!(light.is_finite(), "{light}");
     }
-    let mut bytes = Vec::new();
+    let mut bytes = std::io::Cursor::new(Vec::new());
     solution.write(&mut bytes).expect("memory can be written to");
-    radiosity::solution::Solution::decode(&bytes).expect("was just written");
+    radiosity::solution::Solution::decode(bytes.get_ref()).expect("was just written");
     let _ = solution.lit_mesh();
 });
