@@ -51,11 +51,12 @@ impl<'a, K: Ord + Hash, F: Fn(&Patch, usize) -> K + Sync> Sides<'a, F> {
             let block = first..count.min(first + BLOCK);
             list.par_extend(block.into_par_iter().flat_map_iter(sides));
         }
+        list.par_sort_unstable_by_key(|side| (side.digest, side.patch, side.number));
+        // Where sides that are not one have one digest, which hardly ever happens, their keys tell them apart.
         let of = |side: &Side| key(&mesh.patch(side.patch), side.number());
-        list.par_sort_unstable_by(|a, b| {
-            let digests = a.digest.cmp(&b.digest);
-            digests.then_with(|| (of(a), a.patch).cmp(&(of(b), b.patch)))
-        });
+        let alike = list.par_chunk_by_mut(|a, b| a.digest == b.digest);
+        let alike = alike.filter(|sides| sides.len() > 1);
+        alike.for_each(|sides| sides.sort_by_key(of));
         Self { mesh, key, list }
     }
 
