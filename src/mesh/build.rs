@@ -111,7 +111,7 @@ impl Mesh {
         let (elements, vertices) = self.first_after();
         self.elements.reserve(2 * elements as usize);
         self.vertices.reserve(2 * vertices as usize);
-        self.touched = vec![true; self.patches.len()];
+        self.touched = (0..self.patches.len() as u32).collect();
         for id in 0..self.patches.len() as u32 {
             let patch = self.patch(id);
             if patch.is_triangle() {

@@ -71,8 +71,8 @@ pub struct Mesh {
     buried_weights: FxHashMap<u32, f64>,
     continuation: buried::Continuation,
     weld: weld::Weld,
-    /// Patches that have changed since hanging vertices were last found and vertices weighed.
-    touched: Vec<bool>,
+    /// Patches that have changed since hanging vertices were last found and vertices weighed; some more than once.
+    touched: Vec<u32>,
     /// The vertices that a patch got after those of its coarsest grid, which follow one another, if it got any.
     later: FxHashMap<u32, Vec<u32>>,
     /// The vertices of patches that have more than [`FEW`], by place.

@@ -49,7 +49,7 @@ impl Mesh {
     pub fn split(&mut self, element: u32) -> u32 {
         let parent = self.elements[element as usize];
         debug_assert!(parent.is_leaf());
-        self.touched[parent.patch as usize] = true;
+        self.touch(parent.patch);
         let first = self.elements.len() as u32;
         let at = |mesh: &Self, v: u32| mesh.vertices[v as usize].lattice;
         let [a, b, c] = [0, 1, 2].map(|i| at(self, parent.corners[i]));
@@ -153,11 +153,19 @@ impl Mesh {
         unbalanced
     }
 
-    /// The patches that have changed since vertices were last weighed: few, when a mesh is nearly done.
+    /// A patch changes.
+    fn touch(&mut self, patch: u32) {
+        if self.touched.last() != Some(&patch) {
+            self.touched.push(patch);
+        }
+    }
+
+    /// The patches that have changed since vertices were last weighed, in order: few, when a mesh is nearly done.
     fn touched(&self) -> Vec<u32> {
-        let patches = (0..).zip(&self.touched);
-        let touched = patches.filter(|(_, touched)| **touched);
-        touched.map(|(patch, _)| patch).collect()
+        let mut touched = self.touched.clone();
+        touched.sort_unstable();
+        touched.dedup();
+        touched
     }
 
     /// All elements of some patches.
@@ -217,12 +225,12 @@ impl Mesh {
         for (vertex, now) in (first as usize..self.vertices.len()).zip(buried) {
             if self.buried[vertex] != now {
                 self.buried[vertex] = now;
-                self.touched[self.vertices[vertex].patch as usize] = true;
+                self.touch(self.vertices[vertex].patch);
             }
         }
         self.plan_continuation();
         let touched = self.touched();
         self.integrate(&touched);
-        self.touched.fill(false);
+        self.touched = Vec::new();
     }
 }

@@ -55,7 +55,7 @@ impl Mesh {
             }
         }
         let buried = std::mem::take(&mut self.buried);
-        self.touched = vec![true; patches];
+        self.touched = (0..patches as u32).collect();
         self.finish_topology(0, &buried);
         Ok(())
     }
