@@ -105,13 +105,14 @@ pub(super) fn draw<P: Fn(f64, f64) -> DVec3>(
     count: usize,
     seed: u32,
 ) -> Vec<Draw> {
-    let sum_of = |part: &Part<P>| f64::from(part.power.element_sum());
-    let total: f64 = parts.clone().map(|part| sum_of(&part)).sum();
+    // There may be millions of parts all over the memory: each is looked at once, and again only if a point is drawn from it.
+    let sums: Vec<f32> = parts.clone().map(|part| part.power.element_sum()).collect();
+    let total: f64 = sums.iter().map(|sum| f64::from(*sum)).sum();
     let step = total / count as f64;
     let mut draws = Vec::with_capacity(count);
     let (mut passed, mut next) = (0.0, 0.5 * step);
-    for part in parts {
-        let sum = sum_of(&part);
+    for (part, sum) in parts.zip(sums) {
+        let sum = f64::from(sum);
         passed += sum;
         while next < passed && draws.len() < count {
             let number = draws.len() as u32;
