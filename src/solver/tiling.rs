@@ -22,6 +22,9 @@ pub(super) const SIZE: f64 = 1.0 / 128.0;
 /// An uneven tile is cut into four, and these again, at most so many times.
 const MOST_CUTS: u32 = 4;
 
+/// Patches of which the tiles are made at once.
+const SLICE: usize = 1 << 14;
+
 /// Stands before what the parts of a cell send that is cut into four.
 const CUT: Spectrum = Spectrum::NAN;
 
@@ -78,18 +81,16 @@ impl Tiling {
     }
 
     fn with(mesh: &Mesh, cuts: Vec<Option<Cut>>, uneven: Uneven) -> Self {
-        let of_patch = |(number, (patch, cut)): (usize, (Patch, &Option<Cut>))| {
-            let marks = uneven.get(&(number as u32));
-            let cells = cut.map(|cut| cut.cells(marks)).unwrap_or_default();
+        let of_patch = |number: u32, cut: Cut| {
+            let patch = mesh.patch(number);
+            let cells = cut.cells(uneven.get(&number));
             let tiles: Vec<Tile> = cells.iter().map(|cell| tile(&patch, cell)).collect();
             tiles
         };
-        let patches = mesh.patches.par_iter().zip(&cuts).enumerate();
+        let count = counts(&cuts, &uneven).map(|(_, count)| count).sum();
+        let tiles = listed(&cuts, count, of_patch);
         Self {
-            clusters: Clusters::new(
-                patches.flat_map_iter(of_patch).collect(),
-                mesh.frame.extent(),
-            ),
+            clusters: Clusters::new(tiles, mesh.frame.extent()),
             cuts,
             uneven,
         }
@@ -114,14 +115,8 @@ impl Tiling {
     pub fn parts(
         &self,
     ) -> impl Iterator<Item = Part<impl Fn(f64, f64) -> DVec3 + '_>> + Clone + '_ {
-        let patches = (0..).zip(&self.cuts);
-        let patches = patches.flat_map(|(patch, cut)| {
-            let count = match self.uneven.get(&patch) {
-                Some(marks) => marks.iter().filter(|is_cut| !**is_cut).count(),
-                None => cut.map_or(0, |cut| cut.count()),
-            };
-            std::iter::repeat_n(patch, count)
-        });
+        let counts = counts(&self.cuts, &self.uneven);
+        let patches = counts.flat_map(|(patch, count)| std::iter::repeat_n(patch, count));
         let part = |(patch, (tile, radiosity)): (u32, (&'_ Tile, Spectrum))| {
             let tile = *tile;
             Part {
@@ -136,20 +131,50 @@ impl Tiling {
 
     /// What each tile has unshot of one sign, and [`CUT`] before that of the parts of a cell that is cut into four.
     pub fn unshot(&self, mesh: &Mesh, light: &Light, sign: Sign) -> Vec<Spectrum> {
-        let of_patch = |(patch, cut): (usize, &Option<Cut>)| {
-            let Some(cut) = cut else {
-                return Vec::new();
-            };
-            let marks = self.uneven.get(&(patch as u32));
-            let means = means_on(mesh, light, (patch, sign), &cut.cells(marks));
+        let of_patch = |patch: u32, cut: Cut| {
+            let marks = self.uneven.get(&patch);
+            let means = means_on(mesh, light, (patch as usize, sign), &cut.cells(marks));
             match marks {
                 Some(marks) => marked(marks, means),
                 None => means,
             }
         };
-        let patches = self.cuts.par_iter().enumerate().with_min_len(64);
-        patches.flat_map_iter(of_patch).collect()
+        let marks = self.uneven.values().flatten();
+        let room = self.clusters.tiles().len() + marks.filter(|is_cut| **is_cut).count();
+        listed(&self.cuts, room, of_patch)
     }
+}
+
+/// How many tiles each patch is.
+fn counts<'a>(
+    cuts: &'a [Option<Cut>],
+    uneven: &'a Uneven,
+) -> impl Iterator<Item = (u32, usize)> + Clone + 'a {
+    (0..).zip(cuts).map(|(patch, cut)| {
+        let count = match uneven.get(&patch) {
+            Some(marks) => marks.iter().filter(|is_cut| !**is_cut).count(),
+            None => cut.map_or(0, |cut| cut.count()),
+        };
+        (patch, count)
+    })
+}
+
+/// What `of_patch` says of each patch that radiates, one after the other, no more than `room` in all. A slice of the patches at a time:
+/// put together at once, all would be there twice.
+fn listed<T: Send>(
+    cuts: &[Option<Cut>],
+    room: usize,
+    of_patch: impl Fn(u32, Cut) -> Vec<T> + Sync,
+) -> Vec<T> {
+    let mut list = Vec::with_capacity(room);
+    for (slice, cuts) in cuts.chunks(SLICE).enumerate() {
+        let numbered = cuts.par_iter().enumerate().with_min_len(64);
+        list.par_extend(numbered.flat_map_iter(|(place, cut)| {
+            let number = (slice * SLICE + place) as u32;
+            cut.map(|cut| of_patch(number, cut)).unwrap_or_default()
+        }));
+    }
+    list
 }
 
 impl Cut {
