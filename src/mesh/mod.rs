@@ -127,8 +127,15 @@ impl Mesh {
     }
 
     /// How many vertices there is room for, also for what is kept by vertex, before anything has to be moved.
-    pub fn vertex_room(&self) -> usize {
+    fn vertex_room(&self) -> usize {
         self.vertices.capacity()
+    }
+
+    /// A value for each vertex, with room for those of vertices to come.
+    pub fn by_vertex<T: Clone>(&self, value: T) -> Vec<T> {
+        let mut values = Vec::with_capacity(self.vertex_room());
+        values.resize(self.vertices.len(), value);
+        values
     }
 
     /// The patch with a number.

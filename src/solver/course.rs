@@ -1,5 +1,6 @@
 //! How far a solve has come: with the mesh and its light, all that it takes to go on as if it had never been interrupted.
 
+use super::arrived::Arrived;
 use super::audit::Span;
 use super::escape::Lost;
 use super::feelers::Feeler;
@@ -9,7 +10,7 @@ use super::shoot::Shooter;
 use super::source::source_from;
 use super::tiling;
 use super::wave::Wave;
-use crate::form_factor::{DEEPEST, Gather};
+use crate::form_factor::DEEPEST;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use serde::{Deserialize, Serialize};
@@ -95,7 +96,7 @@ pub(super) struct Shot {
     pub candidates: Vec<u32>,
     pub feelers: Vec<Feeler>,
     /// What the shot gave to each vertex so far.
-    pub arrived: Vec<Gather>,
+    pub arrived: Arrived,
     /// Made of `cells` when it is asked for.
     #[serde(skip)]
     pub made: Option<Shooter>,

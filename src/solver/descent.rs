@@ -3,6 +3,7 @@
 //! Most elements are small because of the shadows of emitters. What other patches reflect onto them is smooth, and where an
 //! element's own vertices say so, those of its parts get the interpolant of its fan in place of another look at the source.
 
+use super::arrived::Arrived;
 use super::light::Light;
 use super::options::Options;
 use super::refine::{Range, scale, unit};
@@ -36,7 +37,7 @@ pub(super) struct Descent<'a> {
     beam: Beam<'a>,
     options: &'a Options,
     /// What the shot gives to each vertex.
-    arrived: &'a mut [Gather],
+    arrived: &'a mut Arrived,
     is_known: Vec<bool>,
     pub rays: u64,
 }
@@ -55,7 +56,7 @@ impl<'a> Descent<'a> {
         light: &'a Light,
         beam: Beam<'a>,
         options: &'a Options,
-        arrived: &'a mut [Gather],
+        arrived: &'a mut Arrived,
     ) -> Self {
         Self {
             mesh,
@@ -95,7 +96,7 @@ impl<'a> Descent<'a> {
             .collect();
         // The finest last: along a side that it shares with a coarser one, its values are the nearer ones.
         for (vertex, gather) in followers.into_iter().flatten() {
-            self.arrived[vertex as usize] = gather;
+            self.arrived.set(vertex, gather);
         }
     }
 
@@ -111,7 +112,7 @@ impl<'a> Descent<'a> {
     }
 
     fn at(&self, vertex: u32) -> Gather {
-        self.arrived[self.mesh.receiver_for(vertex) as usize]
+        self.arrived.at(self.mesh.receiver_for(vertex))
     }
 
     /// Evaluates the shot at those vertices of elements that it has not arrived at.
@@ -139,7 +140,7 @@ impl<'a> Descent<'a> {
             let unit = unit(self.mesh, self.light, &self.beam, self.options, element);
             return residual > RESIDUAL * self.options.epsilon_r * unit;
         }
-        let arrived = || of.vertices().map(|v| &self.arrived[v as usize]);
+        let arrived = || of.vertices().map(|v| self.arrived.at(v));
         let given = arrived().map(|g| g.irradiance.abs().max_element());
         let given = f64::from(given.fold(0.0, f32::max));
         let tolerance = given + FLOOR * scale(self.mesh, self.light, &self.beam, element);
@@ -170,7 +171,7 @@ impl<'a> Descent<'a> {
         let whole = &self.mesh.elements[element as usize];
         let mut halfway = |vertex: u32, ends: [Gather; 2]| {
             if self.is_known[vertex as usize] {
-                return self.arrived[vertex as usize];
+                return self.arrived.at(vertex);
             }
             let gather = Gather::mean(&ends);
             followers.push((vertex, gather));
@@ -238,7 +239,7 @@ mod tests {
                 shooter: &shooter,
                 sign: Sign::Positive,
             };
-            let mut arrived = [0, 1].map(|_| vec![Gather::default(); mesh.vertices.len()]);
+            let mut arrived = [0, 1].map(|_| Arrived::nothing(mesh));
             let [below, at] = &mut arrived;
             let mut down = Descent::new(mesh, light, beam, &options, below);
             down.descend(mesh.patches.iter().flat_map(|p| p.roots.clone()).collect());
@@ -247,8 +248,8 @@ mod tests {
             rays_down += down.rays;
             rays_everywhere += everywhere.rays;
             for vertex in 0..mesh.vertices.len() {
-                followed[vertex] += f64::from(below[vertex].irradiance.max_element());
-                known[vertex] += f64::from(at[vertex].irradiance.max_element());
+                followed[vertex] += f64::from(below.irradiance[vertex].max_element());
+                known[vertex] += f64::from(at.irradiance[vertex].max_element());
             }
         }
         let squares = |of: &dyn Fn(usize) -> f64| {

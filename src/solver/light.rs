@@ -52,14 +52,17 @@ impl Sign {
 impl Light {
     /// Darkness, with everything to be emitted unshot.
     pub fn new(mesh: &Mesh) -> Self {
-        let dark = || {
-            let mut dark = Vec::with_capacity(mesh.vertex_room());
-            dark.resize(mesh.vertices.len(), Spectrum::ZERO);
-            dark
-        };
         Self {
-            irradiance: dark(),
-            unshot: dark(),
+            irradiance: mesh.by_vertex(Spectrum::ZERO),
+            ..Self::to_send(mesh, mesh.by_vertex(Spectrum::ZERO))
+        }
+    }
+
+    /// What is unshot alone: what is given by vertex, and everything to be emitted.
+    pub(super) fn to_send(mesh: &Mesh, unshot: Vec<Spectrum>) -> Self {
+        Self {
+            irradiance: Vec::new(),
+            unshot,
             exitance_unshot: mesh.patches.iter().map(|p| p.exitance).collect(),
         }
     }

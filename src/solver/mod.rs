@@ -3,6 +3,7 @@
 //! The solver does no I/O and prints nothing; it speaks to an [`Observer`]. Imports `geometry`, `radiometry`, `mesh`,
 //! `form_factor` and the visibility trait.
 
+mod arrived;
 mod audit;
 mod behind;
 mod bounce;

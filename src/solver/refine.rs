@@ -1,12 +1,13 @@
 //! The three tests, in order of cost, on the elements that a shot has reached.
 
+use super::arrived::Arrived;
 use super::behind::Behind;
 use super::burial::buried;
 use super::feelers::Feeler;
 use super::light::Light;
 use super::options::{Options, Quantity};
 use super::shoot::{Beam, Shooter, evaluate, shoot_at};
-use crate::form_factor::{Gather, Receiver};
+use crate::form_factor::Receiver;
 use crate::mesh::{Lattice, Mesh, NONE};
 use crate::radiometry::Spectrum;
 use rayon::iter::Either;
@@ -18,7 +19,7 @@ pub(super) struct Refinement<'a> {
     pub mesh: &'a mut Mesh,
     pub light: &'a mut Light,
     /// What the shot gave to each vertex so far.
-    pub arrived: &'a mut Vec<Gather>,
+    pub arrived: &'a mut Arrived,
     pub beam: Beam<'a>,
     pub options: &'a Options,
     pub backing: &'a dyn Behind,
@@ -91,7 +92,7 @@ impl Refinement<'_> {
     /// What tests 1 and 2 compare at a vertex: all light, but of a last gathering what that has brought.
     fn tested(&self, vertex: u32) -> Spectrum {
         match self.beam.shooter {
-            Shooter::All { settled: true, .. } => self.arrived[vertex as usize].irradiance,
+            Shooter::All { settled: true, .. } => self.arrived.irradiance[vertex as usize],
             _ => self.light.irradiance[vertex as usize],
         }
     }
@@ -119,7 +120,7 @@ impl Refinement<'_> {
         let matters = |e: &u32| {
             let of = &self.mesh.elements[*e as usize];
             let threshold = self.options.visibility_significance * self.scale(*e);
-            let known = || of.vertices().map(|v| &self.arrived[v as usize]);
+            let known = || of.vertices().map(|v| self.arrived.at(v));
             let matters = known().any(|g| f64::from(g.unoccluded.max_element()) > threshold);
             matters.then(|| (*e, Range::of(known().map(|g| g.visibility))))
         };
@@ -150,7 +151,7 @@ impl Refinement<'_> {
                                 .get(&(of.patch, self.middle(a, b)))
                                 .copied()
                                 .flatten(),
-                            vertex => self.arrived[vertex as usize].visibility,
+                            vertex => self.arrived.at(vertex).visibility,
                         };
                         range.with(known)
                     });
@@ -165,7 +166,7 @@ impl Refinement<'_> {
     fn overlooked(&self) -> Vec<u32> {
         let leaf_of = |feeler: &Feeler| self.mesh.leaf_at(feeler.patch, feeler.at.0, feeler.at.1);
         let knows = |feeler: &Feeler, leaf: u32| {
-            let arrived = |v: u32| self.arrived[v as usize].irradiance;
+            let arrived = |v: u32| self.arrived.irradiance[v as usize];
             let interpolated = self.mesh.interpolated(leaf, feeler.point, arrived);
             let difference = (feeler.irradiance - interpolated).abs();
             self.size(leaf, difference) <= self.options.epsilon_r * self.unit(leaf)
@@ -248,11 +249,11 @@ impl Refinement<'_> {
             .filter(|v| !self.mesh.buried[*v as usize])
             .collect();
         self.rays += shoot_at(self.mesh, self.light, self.beam, &open, self.arrived);
-        self.mesh
-            .continue_to_buried(self.arrived, |g| &mut g.irradiance, first);
-        for (vertex, arrived) in self.arrived.iter().enumerate().skip(first_vertex) {
-            self.light.irradiance[vertex] += arrived.irradiance;
-            self.light.unshot[vertex] += arrived.irradiance;
+        self.arrived.continue_to_buried(self.mesh, first);
+        let arrived = self.arrived.irradiance.iter().enumerate();
+        for (vertex, arrived) in arrived.skip(first_vertex) {
+            self.light.irradiance[vertex] += *arrived;
+            self.light.unshot[vertex] += *arrived;
         }
         fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
         fresh
@@ -264,13 +265,13 @@ impl Refinement<'_> {
         let count = self.mesh.vertices.len();
         self.light.irradiance.resize(count, Spectrum::ZERO);
         self.light.unshot.resize(count, Spectrum::ZERO);
-        self.arrived.resize(count, Gather::default());
+        self.arrived.grow(count);
         for vertex in known..count as u32 {
             let weighted = self.mesh.interpolate(parent, self.mesh.position(vertex));
             let past = |now: &[Spectrum]| -> Spectrum {
                 weighted
                     .iter()
-                    .map(|(v, w)| (now[*v as usize] - self.arrived[*v as usize].irradiance) * *w)
+                    .map(|(v, w)| (now[*v as usize] - self.arrived.irradiance[*v as usize]) * *w)
                     .sum()
             };
             let (irradiance, unshot) = (past(&self.light.irradiance), past(&self.light.unshot));

@@ -95,10 +95,8 @@ impl Solver<'_> {
     /// The light with nothing shot yet, what is reflected multiplied by `ambient`.
     pub(super) fn whole(&self, ambient: Spectrum) -> Light {
         let reflected = |irradiance: &Spectrum| irradiance.max(Spectrum::ZERO) * ambient;
-        Light {
-            unshot: self.light.irradiance.iter().map(reflected).collect(),
-            ..Light::new(&self.mesh)
-        }
+        let unshot = self.light.irradiance.iter().map(reflected);
+        Light::to_send(&self.mesh, unshot.collect())
     }
 
     /// By how much reflected light grows until what is unshot has gone through all its reflections, were these like those of the

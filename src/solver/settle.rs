@@ -50,9 +50,8 @@ impl Solver<'_> {
     /// The light of a gathering with nothing shot yet.
     fn foreseen(&self, prospect: Spectrum) -> Light {
         let light = self.light.irradiance.par_iter().zip(&self.light.unshot);
-        let mut foreseen = Light::new(&self.mesh);
         let unshot = light.map(|(arrived, unshot)| reflected(*arrived, *unshot, prospect));
-        unshot.collect_into_vec(&mut foreseen.unshot);
+        let mut foreseen = Light::to_send(&self.mesh, unshot.collect());
         if self.course.direct.is_some() {
             foreseen.exitance_unshot.fill(Spectrum::ZERO);
         }
@@ -68,12 +67,12 @@ impl Solver<'_> {
         let direct = self.course.direct.take().unwrap_or_default();
         self.course.lost += direct.lost;
         let light = self.light.irradiance.par_iter_mut();
-        let light = light.zip(&mut self.light.unshot).zip(&wave.arrived);
+        let light = light.zip(&mut self.light.unshot).zip(&wave.arrived.irradiance);
         let light = light.enumerate().with_min_len(4096);
         light.for_each(|(vertex, ((irradiance, unshot), arrived))| {
             let sent = reflected(*irradiance, *unshot, prospect);
             let direct = direct.irradiance.get(vertex).copied().unwrap_or_default();
-            *irradiance = arrived.irradiance + direct;
+            *irradiance = *arrived + direct;
             *unshot = *irradiance - sent;
         });
         self.light.exitance_unshot.fill(Spectrum::ZERO);

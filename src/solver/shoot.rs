@@ -1,5 +1,6 @@
 //! What shoots, evaluated at many vertices.
 
+use super::arrived::Arrived;
 use super::light::{Light, Sign};
 use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
@@ -69,7 +70,7 @@ pub(super) fn shoot_at(
     light: &Light,
     beam: Beam,
     vertices: &[u32],
-    arrived: &mut [Gather],
+    arrived: &mut Arrived,
 ) -> u64 {
     let points: Vec<_> = vertices
         .par_iter()
@@ -81,7 +82,7 @@ pub(super) fn shoot_at(
     let receiving = vertices.iter().filter(|v| mesh.receives(**v));
     for (vertex, mut gather) in receiving.zip(gathers) {
         gather.irradiance *= beam.sign.factor();
-        arrived[*vertex as usize] = gather;
+        arrived.set(*vertex, gather);
     }
     rays
 }

@@ -1,5 +1,6 @@
 //! One shot: it arrives at the vertices, the mesh is refined for it pass by pass, what it loses is measured.
 
+use super::arrived::Arrived;
 use super::course::{ALL, Shot, Stage};
 use super::descent::Descent;
 use super::escape::{Lost, Part, draw, escaped};
@@ -9,7 +10,7 @@ use super::refine::Refinement;
 use super::run::Solver;
 use super::shoot::{Beam, Shooter, faces};
 use super::source::{cells_of, source_from};
-use crate::form_factor::{Cell, Gather, Sampler, Source};
+use crate::form_factor::{Cell, Sampler, Source};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -20,17 +21,8 @@ impl<'a> Solver<'a> {
         let sampler = self.sampler();
         let from = (shooter, sign);
         let thresholds = &sampler.thresholds;
-        let mut shot = Shot {
-            shooter: shooter as u32,
-            sign,
-            power,
-            cells: cells_of(&self.mesh, &self.light, from, &self.options, thresholds),
-            candidates: Vec::new(),
-            feelers: Vec::new(),
-            arrived: Vec::new(),
-            made: None,
-        };
-        let source = source_from(&self.mesh, shooter, &shot.cells);
+        let cells = cells_of(&self.mesh, &self.light, from, &self.options, thresholds);
+        let source = source_from(&self.mesh, shooter, &cells);
         let reached = self.reached(&source);
         let shooting = Shooter::Patch(source);
         let beam = Beam {
@@ -39,19 +31,24 @@ impl<'a> Solver<'a> {
             sign,
         };
         self.light.take(&self.mesh, shooter, sign);
-        let rays;
-        (shot.arrived, rays) = self.arrivals(beam, shooter, &reached);
+        let (arrived, rays) = self.arrivals(beam, shooter, &reached);
         self.course.rays += rays;
-        self.light
-            .receive(shot.arrived.par_iter().map(|g| g.irradiance));
+        self.light.receive(arrived.irradiance.par_iter().copied());
         let elements = self.mesh.leaves();
         let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
-        shot.candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
-        let (found, rays) = feelers(&self.mesh, &self.light, &self.behind, beam, &reached);
+        let candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
+        let (feelers, rays) = feelers(&self.mesh, &self.light, &self.behind, beam, &reached);
         self.course.rays += rays;
-        shot.feelers = found;
-        shot.made = Some(shooting);
-        self.course.stage = Stage::Refining(shot);
+        self.course.stage = Stage::Refining(Shot {
+            shooter: shooter as u32,
+            sign,
+            power,
+            cells,
+            candidates,
+            feelers,
+            arrived,
+            made: Some(shooting),
+        });
     }
 
     /// One pass of refinement for what a shot gave.
@@ -154,12 +151,7 @@ impl<'a> Solver<'a> {
 
     /// What a beam from a patch gives to each vertex of the patches that it reaches, and with how many rays: what an emitter sends is
     /// evaluated at all of them, anything else as far down as it is rough.
-    pub(super) fn arrivals(
-        &self,
-        beam: Beam,
-        shooter: usize,
-        reached: &[bool],
-    ) -> (Vec<Gather>, u64) {
+    pub(super) fn arrivals(&self, beam: Beam, shooter: usize, reached: &[bool]) -> (Arrived, u64) {
         let mesh = &self.mesh;
         let is_reached = |e: &u32| reached[mesh.elements[*e as usize].patch as usize];
         let elements: Vec<u32> = if mesh.patches.at(shooter).exitance != Spectrum::ZERO {
@@ -168,12 +160,11 @@ impl<'a> Solver<'a> {
             let roots = mesh.patches.iter().flat_map(|p| p.roots.clone());
             roots.filter(is_reached).collect()
         };
-        let mut arrived = vec![Gather::default(); mesh.vertices.len()];
+        let mut arrived = Arrived::nothing(mesh);
         let mut descent = Descent::new(mesh, &self.light, beam, &self.options, &mut arrived);
         descent.descend(elements);
         let rays = descent.rays;
-        self.mesh
-            .continue_to_buried(&mut arrived, |g| &mut g.irradiance, 0);
+        arrived.continue_to_buried(mesh, 0);
         (arrived, rays)
     }
 

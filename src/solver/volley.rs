@@ -62,11 +62,10 @@ impl Solver<'_> {
             sign,
         };
         let (arrived, rays) = self.arrivals(beam, patch, &reached);
-        let irradiance: Vec<Spectrum> = arrived.into_iter().map(|g| g.irradiance).collect();
         let power = power / self.emitted().element_sum();
         let seed = self.course.shots as u32 + patch as u32;
         Given {
-            irradiance,
+            irradiance: arrived.irradiance,
             lost: self.escape(patch, &shooter, power, seed) * f64::from(sign.factor()),
             rays,
         }

@@ -4,6 +4,7 @@
 //! end, of what is reflected: the direct light stays as it is. What either takes is a cut through the tree of clusters for each
 //! vertex, not a visit to each vertex for each patch. The waves in between arrive at neighbourhoods (`bounce.rs`).
 
+use super::arrived::Arrived;
 use super::course::{ALL, Bounce, Shot, Stage};
 use super::descent::{Descent, WIDEST};
 use super::escape::Lost;
@@ -45,7 +46,7 @@ pub(super) struct Wave {
     pub next: u32,
     /// … and how many of the elements of that where it sets foot it has.
     pub within: u32,
-    pub arrived: Vec<Gather>,
+    pub arrived: Arrived,
 }
 
 impl Wave {
@@ -101,8 +102,10 @@ impl<'a> Solver<'a> {
     }
 
     pub(super) fn set_out(&mut self, kind: Kind, cells: Vec<Spectrum>, power: f64) {
-        let mut arrived = Vec::with_capacity(self.mesh.vertex_room());
-        arrived.resize(self.mesh.vertices.len(), Gather::default());
+        let arrived = match kind {
+            Kind::Unshot(_) => Arrived::nothing(&self.mesh),
+            Kind::Whole(_) => Arrived::nothing_unseen(&self.mesh),
+        };
         self.course.stage = Stage::Waving(Wave {
             kind,
             cells,
@@ -194,7 +197,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Evaluates `beam` at some of the vertices of small patches, from which the others take it. Returns the number of rays.
-    fn shoot_at_groups(&self, beam: Beam, small: &[u32], arrived: &mut [Gather]) -> u64 {
+    fn shoot_at_groups(&self, beam: Beam, small: &[u32], arrived: &mut Arrived) -> u64 {
         let mesh = &self.mesh;
         let receives = |v: &u32| mesh.receives(*v) && !mesh.buried[*v as usize];
         let vertices = small.iter().flat_map(|patch| mesh.vertices_of(*patch));
@@ -222,16 +225,15 @@ impl<'a> Solver<'a> {
         let found = Groups::new(mesh, &receiving).gather(receive, differ);
         for (vertex, mut gather) in found {
             gather.irradiance *= beam.sign.factor();
-            arrived[vertex as usize] = gather;
+            arrived.set(vertex, gather);
         }
         rays
     }
 
     /// A wave has arrived everywhere.
     fn arrive(&mut self, mut wave: Wave) {
-        self.mesh.share(&mut wave.arrived, Gather::mean);
-        self.mesh
-            .continue_to_buried(&mut wave.arrived, |g| &mut g.irradiance, 0);
+        wave.arrived.share(&self.mesh);
+        wave.arrived.continue_to_buried(&self.mesh, 0);
         match wave.kind {
             Kind::Unshot(sign) => self.arrive_unshot(wave, sign),
             Kind::Whole(prospect) => self.arrive_whole(wave, prospect),
@@ -241,7 +243,7 @@ impl<'a> Solver<'a> {
     fn arrive_unshot(&mut self, wave: Wave, sign: Sign) {
         self.light.take_all(sign);
         self.light
-            .receive(wave.arrived.par_iter().map(|g| g.irradiance));
+            .receive(wave.arrived.irradiance.par_iter().copied());
         let meshes = self.meshes(wave.power);
         let shot = self.arrived(wave, sign, meshes);
         if meshes {

@@ -1,0 +1,125 @@
+//! What a shot or a wave has given to each vertex so far.
+//!
+//! After a shot of emitters elements are tested for what their vertices see of it. Of what all reflect together nobody asks that, so
+//! a wave of this keeps irradiance alone: of a million triangles the rest would be a tenth of all memory.
+
+use crate::form_factor::Gather;
+use crate::mesh::Mesh;
+use crate::radiometry::Spectrum;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// What has arrived, by vertex. Files have it as a list of [`Gather`]s.
+#[derive(Debug, Clone)]
+pub(super) struct Arrived {
+    pub irradiance: Vec<Spectrum>,
+    /// Empty if nobody will ask for it.
+    sight: Vec<Sight>,
+}
+
+/// What a vertex sees of the source; see [`Gather`].
+#[derive(Debug, Clone, Copy, Default)]
+struct Sight {
+    unoccluded: Spectrum,
+    visibility: Option<f32>,
+}
+
+impl Arrived {
+    /// Nothing, with what is seen.
+    pub fn nothing(mesh: &Mesh) -> Self {
+        Self {
+            irradiance: mesh.by_vertex(Spectrum::ZERO),
+            sight: mesh.by_vertex(Sight::default()),
+        }
+    }
+
+    /// Nothing; what is seen will not be kept.
+    pub fn nothing_unseen(mesh: &Mesh) -> Self {
+        Self {
+            irradiance: mesh.by_vertex(Spectrum::ZERO),
+            sight: Vec::new(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.irradiance.len()
+    }
+
+    /// Nothing has arrived at the vertices that are new.
+    pub fn grow(&mut self, vertices: usize) {
+        self.irradiance.resize(vertices, Spectrum::ZERO);
+        if !self.sight.is_empty() {
+            self.sight.resize(vertices, Sight::default());
+        }
+    }
+
+    /// What has arrived at a vertex.
+    pub fn at(&self, vertex: u32) -> Gather {
+        let irradiance = self.irradiance[vertex as usize];
+        let sight = self.sight.get(vertex as usize);
+        sight.copied().unwrap_or_default().with(irradiance)
+    }
+
+    /// A vertex receives.
+    pub fn set(&mut self, vertex: u32, gather: Gather) {
+        self.irradiance[vertex as usize] = gather.irradiance;
+        if let Some(sight) = self.sight.get_mut(vertex as usize) {
+            *sight = Sight::of(&gather);
+        }
+    }
+
+    /// Vertices that receive for others give to these.
+    pub fn share(&mut self, mesh: &Mesh) {
+        let mean = |of: &[Spectrum]| of.iter().sum::<Spectrum>() / of.len() as f32;
+        mesh.share(&mut self.irradiance, mean);
+        if !self.sight.is_empty() {
+            mesh.share(&mut self.sight, Sight::mean);
+        }
+    }
+
+    /// Light is continued to buried vertices, from `first` on.
+    pub fn continue_to_buried(&mut self, mesh: &Mesh, first: u32) {
+        mesh.continue_to_buried(&mut self.irradiance, |e| e, first);
+    }
+}
+
+impl Sight {
+    fn of(gather: &Gather) -> Self {
+        Self {
+            unoccluded: gather.unoccluded,
+            visibility: gather.visibility,
+        }
+    }
+
+    fn with(self, irradiance: Spectrum) -> Gather {
+        Gather {
+            irradiance,
+            unoccluded: self.unoccluded,
+            visibility: self.visibility,
+        }
+    }
+
+    /// That of three or four corners.
+    fn mean(of: &[Self]) -> Self {
+        let mut corners = [Gather::default(); 4];
+        for (corner, sight) in corners.iter_mut().zip(of) {
+            *corner = sight.with(Spectrum::ZERO);
+        }
+        Self::of(&Gather::mean(&corners[..of.len()]))
+    }
+}
+
+impl Serialize for Arrived {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq((0..self.len() as u32).map(|vertex| self.at(vertex)))
+    }
+}
+
+impl<'de> Deserialize<'de> for Arrived {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let gathers = Vec::<Gather>::deserialize(deserializer)?;
+        Ok(Self {
+            irradiance: gathers.iter().map(|gather| gather.irradiance).collect(),
+            sight: gathers.iter().map(Sight::of).collect(),
+        })
+    }
+}
