@@ -16,11 +16,13 @@ pub(super) struct Arrived {
     sight: Vec<Sight>,
 }
 
-/// What a vertex sees of the source; see [`Gather`].
-#[derive(Debug, Clone, Copy, Default)]
+/// What a vertex sees of the source, in as little as the tests ask for; see [`Gather`].
+#[derive(Debug, Clone, Copy)]
 struct Sight {
-    unoccluded: Spectrum,
-    visibility: Option<f32>,
+    /// Of the strongest channel.
+    unoccluded: f32,
+    /// NaN where nothing of the source is above the horizon.
+    visibility: f32,
 }
 
 impl Arrived {
@@ -28,7 +30,7 @@ impl Arrived {
     pub fn nothing(mesh: &Mesh) -> Self {
         Self {
             irradiance: mesh.by_vertex(Spectrum::ZERO),
-            sight: mesh.by_vertex(Sight::default()),
+            sight: mesh.by_vertex(Sight::NOTHING),
         }
     }
 
@@ -48,7 +50,7 @@ impl Arrived {
     pub fn grow(&mut self, vertices: usize) {
         self.irradiance.resize(vertices, Spectrum::ZERO);
         if !self.sight.is_empty() {
-            self.sight.resize(vertices, Sight::default());
+            self.sight.resize(vertices, Sight::NOTHING);
         }
     }
 
@@ -56,7 +58,7 @@ impl Arrived {
     pub fn at(&self, vertex: u32) -> Gather {
         let irradiance = self.irradiance[vertex as usize];
         let sight = self.sight.get(vertex as usize);
-        sight.copied().unwrap_or_default().with(irradiance)
+        sight.unwrap_or(&Sight::NOTHING).with(irradiance)
     }
 
     /// A vertex receives.
@@ -83,18 +85,23 @@ impl Arrived {
 }
 
 impl Sight {
+    const NOTHING: Self = Self {
+        unoccluded: 0.0,
+        visibility: f32::NAN,
+    };
+
     fn of(gather: &Gather) -> Self {
         Self {
-            unoccluded: gather.unoccluded,
-            visibility: gather.visibility,
+            unoccluded: gather.unoccluded.max_element(),
+            visibility: gather.visibility.unwrap_or(f32::NAN),
         }
     }
 
     fn with(self, irradiance: Spectrum) -> Gather {
         Gather {
             irradiance,
-            unoccluded: self.unoccluded,
-            visibility: self.visibility,
+            unoccluded: Spectrum::splat(self.unoccluded),
+            visibility: Some(self.visibility).filter(|index| !index.is_nan()),
         }
     }
 

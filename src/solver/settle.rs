@@ -67,7 +67,9 @@ impl Solver<'_> {
         let direct = self.course.direct.take().unwrap_or_default();
         self.course.lost += direct.lost;
         let light = self.light.irradiance.par_iter_mut();
-        let light = light.zip(&mut self.light.unshot).zip(&wave.arrived.irradiance);
+        let light = light
+            .zip(&mut self.light.unshot)
+            .zip(&wave.arrived.irradiance);
         let light = light.enumerate().with_min_len(4096);
         light.for_each(|(vertex, ((irradiance, unshot), arrived))| {
             let sent = reflected(*irradiance, *unshot, prospect);
