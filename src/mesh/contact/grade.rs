@@ -10,7 +10,7 @@
 //! |---|---|---|---|
 //! | Cornell box | 19, 1536 | 32, 2794 | 33, 1742 |
 //! | Geometry | 30, 800 | 51, 1370 | 51, 1209 |
-//! | Shadow | 55, 1684 | 103, 3984 | 122, 1729 |
+//! | Shadow | 55, 1684 | 103, 3984 | 122, 1736 |
 
 use super::arrange::{Arrangement, Node};
 use super::face::Face;
@@ -23,8 +23,8 @@ use rustc_hash::FxHashSet;
 /// Triangles with a smaller angle, in degrees, are needles.
 const LEAST_ANGLE: f64 = 20.0;
 
-/// Rounds of adding points and triangulating again; most faces need two or three.
-const ROUNDS: usize = 12;
+/// Rounds of adding points and triangulating again.
+const ROUNDS: usize = 6;
 
 /// Adds points; needles shorter than `smallest` stay, and so do those between segments at a small angle.
 pub(super) fn grade(face: &Face, mut arrangement: Arrangement, smallest: f64) -> Arrangement {
