@@ -17,19 +17,35 @@ use super::face::Face;
 use super::lines::Line;
 use super::quads::{Tile, flatness};
 use super::tile::{sides, tile};
+use crate::geometry::Frame;
 use glam::DVec2;
 use rustc_hash::FxHashSet;
 
 /// Triangles with a smaller angle, in degrees, are needles.
 const LEAST_ANGLE: f64 = 20.0;
 
-/// Rounds of adding points and triangulating again.
-const ROUNDS: usize = 6;
+/// How far needles are relieved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grading {
+    /// Shorter ones stay; a fraction of the scene's extent, then of the frame's unit.
+    pub smallest: f64,
+    /// Rounds of adding points and triangulating again.
+    pub rounds: usize,
+}
 
-/// Adds points; needles shorter than `smallest` stay, and so do those between segments at a small angle.
-pub(super) fn grade(face: &Face, mut arrangement: Arrangement, smallest: f64) -> Arrangement {
+impl Grading {
+    /// With lengths in the unit of the frame.
+    pub fn in_frame(self, frame: &Frame) -> Self {
+        let smallest = self.smallest * frame.extent();
+        Self { smallest, ..self }
+    }
+}
+
+/// Adds points; needles between segments at a small angle stay.
+pub(super) fn grade(face: &Face, mut arrangement: Arrangement, how: Grading) -> Arrangement {
+    let Grading { smallest, rounds } = how;
     let most = 3 * arrangement.nodes.len();
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let Some(tiles) = tile(face, &arrangement) else {
             break;
         };

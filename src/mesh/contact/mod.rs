@@ -32,7 +32,7 @@ use crate::scene::{Scene, Surface};
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
 use glam::DVec3;
-use grade::grade;
+use grade::{Grading, grade};
 use lines::Line;
 use near::Neighbours;
 use outline::Outlines;
@@ -52,14 +52,20 @@ const REACH: f64 = 1e-6;
 /// A surface on which more segments than this end is left whole: finding where they cross takes time with their square.
 const MOST_LINES: usize = 10_000;
 
-/// Triangles no longer than this fraction of the scene's extent keep their small angles: elements are not longer either.
-const FINE: f64 = 0.1;
+/// Triangles no longer than a tenth of the scene keep their small angles: elements are not longer either.
+const GRADING: Grading = Grading {
+    smallest: 0.1,
+    rounds: 6,
+};
 
 /// With more surfaces than this a scene is large for its rooms, and a patch more is not a shot more …
 pub(super) const MANY: usize = 2000;
 
-/// … so needles are relieved down to this length: light across their tips is a star of streaks.
-const FINE_OF_MANY: f64 = 0.01;
+/// … so needles are relieved down to a hundredth of it: light across their tips is a star of streaks.
+const GRADING_OF_MANY: Grading = Grading {
+    smallest: 0.01,
+    rounds: 12,
+};
 
 /// Pieces have the area of their surface to this relative precision, or it is left whole.
 const SAME_AREA: f64 = 1e-9;
@@ -181,19 +187,19 @@ struct Splitter<'a> {
     regions: &'a Regions,
     neighbours: Neighbours,
     reach: f64,
-    fine: f64,
+    grading: Grading,
 }
 
 impl<'a> Splitter<'a> {
     fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions) -> Self {
         let is_many = shapes.surfaces.len() > MANY;
-        let fine = if is_many { FINE_OF_MANY } else { FINE };
+        let grading = if is_many { GRADING_OF_MANY } else { GRADING };
         Self {
             shapes,
             regions,
             neighbours: Neighbours::new(shapes.surfaces, &shapes.positions),
             reach: REACH * frame.extent(),
-            fine: fine * frame.extent(),
+            grading: grading.in_frame(frame),
         }
     }
 
@@ -202,7 +208,12 @@ impl<'a> Splitter<'a> {
         let face = Face::new(&self.shapes.corners(surface), self.reach)?;
         let lines = self.lines(&face, surface);
         let outline = self.shapes.outline(surface);
-        (!lines.is_empty()).then(|| (surface, split(&face, surface, &lines, outline, self.fine)))
+        (!lines.is_empty()).then(|| {
+            (
+                surface,
+                split(&face, surface, &lines, outline, self.grading),
+            )
+        })
     }
 
     /// The pieces of a region, by its first surface; those of its members if it cannot be tiled.
@@ -242,7 +253,7 @@ impl<'a> Splitter<'a> {
             return Some(vec![Piece::new(members[0], &corners.map(at), [true; 4])]);
         }
         let lines: Vec<Line> = around.lines.iter().copied().chain(met).collect();
-        split(&face, members[0], &lines, [true; 4], self.fine)
+        split(&face, members[0], &lines, [true; 4], self.grading)
     }
 
     /// Where surfaces of other regions meet a face.
@@ -263,12 +274,12 @@ fn split(
     surface: u32,
     lines: &[Line],
     outline: [bool; 4],
-    fine: f64,
+    grading: Grading,
 ) -> Option<Vec<Piece>> {
     let all = arrange(face, lines, MOST_LINES)?;
     let straight = straighten(&all.nodes, &all.edges, face.reach);
     let few = rearrange(face, &all.nodes, &straight, MOST_LINES);
-    let graded = few.clone().map(|few| grade(face, few, fine));
+    let graded = few.clone().map(|few| grade(face, few, grading));
     // What is nearer to the input is less well shaped; it serves where rounding spoils the better.
     let attempts = [graded, few, Some(all)].into_iter().flatten();
     attempts
