@@ -129,9 +129,8 @@ impl Kernel for Splitting<'_, '_> {
         } = self.scratch;
         let points = self.pairings.iter().zip(leaves).zip(fresh);
         // Where the last round has split nothing, there is nothing left to split.
-        for ((pairing, leaves), fresh) in
-            points.filter(|((_, leaves), fresh)| **fresh < leaves.len())
-        {
+        let open = points.filter(|((_, leaves), fresh)| **fresh < leaves.len());
+        for ((pairing, leaves), fresh) in open {
             *fresh = pairing.split_disagreeing(leaves, marks, split);
         }
     }

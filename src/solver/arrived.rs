@@ -130,3 +130,55 @@ impl<'de> Deserialize<'de> for Arrived {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::options::Preset;
+    use crate::solver::trial::Trial;
+
+    #[test]
+    fn what_tests_ask_for_is_kept_and_goes_through_a_file() {
+        let trial = Trial::after(1, Preset::Draft.options());
+        let mesh = &trial.solver().mesh;
+        let lit = Gather {
+            irradiance: Spectrum::new(1.0, 2.0, 3.0),
+            unoccluded: Spectrum::new(4.0, 6.0, 5.0),
+            visibility: Some(0.5),
+        };
+        let below_the_horizon = Gather::default();
+        let mut arrived = Arrived::nothing(mesh);
+        arrived.set(0, lit);
+        arrived.set(1, below_the_horizon);
+        let text = serde_json::to_string(&arrived).expect("memory can be written to");
+        let read: Arrived = serde_json::from_str(&text).expect("was just written");
+        for arrived in [&arrived, &read] {
+            let kept = arrived.at(0);
+            assert_eq!(kept.irradiance, lit.irradiance);
+            assert_eq!(kept.unoccluded.max_element(), 6.0);
+            assert_eq!(kept.visibility, lit.visibility);
+            assert_eq!(arrived.at(1), below_the_horizon);
+        }
+        let listed: Vec<Gather> = serde_json::from_str(&text).expect("files have it so");
+        assert_eq!(listed.len(), mesh.vertices.len());
+        assert_eq!(listed[0], arrived.at(0));
+    }
+
+    #[test]
+    fn unseen_it_is_the_irradiance_alone() {
+        let trial = Trial::after(1, Preset::Draft.options());
+        let mut arrived = Arrived::nothing_unseen(&trial.solver().mesh);
+        let irradiance = Spectrum::ONE;
+        let lit = Gather {
+            irradiance,
+            unoccluded: Spectrum::ONE,
+            visibility: Some(1.0),
+        };
+        arrived.set(0, lit);
+        let alone = Gather {
+            irradiance,
+            ..Gather::default()
+        };
+        assert_eq!(arrived.at(0), alone);
+    }
+}

@@ -20,3 +20,20 @@ pub(super) fn in_order<T: Send>(
         terms.drain(..).for_each(&mut add);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bits_are_those_of_a_plain_loop() {
+        let count = 3 * BLOCK + 17;
+        let term = |i: usize| 1.0 / (1.0 + i as f32);
+        let mut sum = 0.0_f32;
+        in_order(count, term, |term| sum += term);
+        let plain =
+            |terms: &mut dyn Iterator<Item = usize>| terms.fold(0.0, |sum, i| sum + term(i));
+        assert_eq!(sum, plain(&mut (0..count)));
+        assert_ne!(sum, plain(&mut (0..count).rev()), "the order matters");
+    }
+}

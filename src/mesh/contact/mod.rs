@@ -58,7 +58,7 @@ const GRADING: Grading = Grading {
     rounds: 6,
 };
 
-/// With more surfaces than this a scene is large for its rooms, and a patch more is not a shot more …
+/// With more surfaces than this all patches shoot at once, if the options do not say otherwise, and a patch more is not a shot more …
 pub(super) const MANY: usize = 2000;
 
 /// … so needles are relieved down to a hundredth of it: light across their tips is a star of streaks.
@@ -207,13 +207,12 @@ impl<'a> Splitter<'a> {
     fn alone(&self, surface: u32) -> Option<(u32, Option<Vec<Piece>>)> {
         let face = Face::new(&self.shapes.corners(surface), self.reach)?;
         let lines = self.lines(&face, surface);
+        if lines.is_empty() {
+            return None;
+        }
         let outline = self.shapes.outline(surface);
-        (!lines.is_empty()).then(|| {
-            (
-                surface,
-                split(&face, surface, &lines, outline, self.grading),
-            )
-        })
+        let pieces = split(&face, surface, &lines, outline, self.grading);
+        Some((surface, pieces))
     }
 
     /// The pieces of a region, by its first surface; those of its members if it cannot be tiled.
