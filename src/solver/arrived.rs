@@ -1,7 +1,7 @@
 //! What a shot or a wave has given to each vertex so far.
 //!
 //! After a shot of emitters elements are tested for what their vertices see of it. Of what all reflect together nobody asks that, so
-//! a wave of this keeps irradiance alone: of a million triangles the rest would be a tenth of all memory.
+//! a wave of this, with which a large scene takes the most memory, keeps irradiance alone.
 
 use crate::form_factor::Gather;
 use crate::mesh::Mesh;

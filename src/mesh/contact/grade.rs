@@ -12,6 +12,7 @@
 //! | Geometry | 30, 800 | 51, 1370 | 51, 1209 |
 //! | Shadow | 55, 1684 | 103, 3984 | 122, 1736 |
 
+use super::MANY;
 use super::arrange::{Arrangement, Node};
 use super::face::Face;
 use super::lines::Line;
@@ -27,17 +28,23 @@ const LEAST_ANGLE: f64 = 20.0;
 /// How far needles are relieved.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grading {
-    /// Shorter ones stay; a fraction of the scene's extent, then of the frame's unit.
-    pub smallest: f64,
+    /// Shorter ones stay, in the unit of the frame.
+    smallest: f64,
     /// Rounds of adding points and triangulating again.
-    pub rounds: usize,
+    rounds: usize,
 }
 
 impl Grading {
-    /// With lengths in the unit of the frame.
-    pub fn in_frame(self, frame: &Frame) -> Self {
-        let smallest = self.smallest * frame.extent();
-        Self { smallest, ..self }
+    /// Down to a tenth of the scene: elements are not longer either. Where surfaces are many, so that a patch more is not a shot more, down
+    /// to a hundredth: light across the tips of needles is a star of streaks.
+    pub fn of(surfaces: usize, frame: &Frame) -> Self {
+        let (fraction, rounds) = if surfaces > MANY {
+            (0.01, 12)
+        } else {
+            (0.1, 6)
+        };
+        let smallest = fraction * frame.extent();
+        Self { smallest, rounds }
     }
 }
 

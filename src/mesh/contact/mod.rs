@@ -52,20 +52,8 @@ const REACH: f64 = 1e-6;
 /// A surface on which more segments than this end is left whole: finding where they cross takes time with their square.
 const MOST_LINES: usize = 10_000;
 
-/// Triangles no longer than a tenth of the scene keep their small angles: elements are not longer either.
-const GRADING: Grading = Grading {
-    smallest: 0.1,
-    rounds: 6,
-};
-
-/// With more surfaces than this all patches shoot at once, if the options do not say otherwise, and a patch more is not a shot more …
+/// With more surfaces than this all patches shoot at once, if the options do not say otherwise.
 pub(super) const MANY: usize = 2000;
-
-/// … so needles are relieved down to a hundredth of it: light across their tips is a star of streaks.
-const GRADING_OF_MANY: Grading = Grading {
-    smallest: 0.01,
-    rounds: 12,
-};
 
 /// Pieces have the area of their surface to this relative precision, or it is left whole.
 const SAME_AREA: f64 = 1e-9;
@@ -192,14 +180,12 @@ struct Splitter<'a> {
 
 impl<'a> Splitter<'a> {
     fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions) -> Self {
-        let is_many = shapes.surfaces.len() > MANY;
-        let grading = if is_many { GRADING_OF_MANY } else { GRADING };
         Self {
             shapes,
             regions,
             neighbours: Neighbours::new(shapes.surfaces, &shapes.positions),
             reach: REACH * frame.extent(),
-            grading: grading.in_frame(frame),
+            grading: Grading::of(shapes.surfaces.len(), frame),
         }
     }
 
