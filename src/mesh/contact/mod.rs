@@ -38,6 +38,7 @@ use near::Neighbours;
 use outline::Outlines;
 use quads::{FAIR, flatness};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 use straighten::straighten;
 use tile::tile;
 
@@ -54,6 +55,9 @@ const MOST_LINES: usize = 10_000;
 
 /// With more surfaces than this all patches shoot at once, if the options do not say otherwise.
 pub(super) const MANY: usize = 2000;
+
+/// Surfaces that are split at a time: what comes of each is a small list, and millions of those leave holes in memory that are not given back.
+const BLOCK: u32 = 1 << 15;
 
 /// Pieces have the area of their surface to this relative precision, or it is left whole.
 const SAME_AREA: f64 = 1e-9;
@@ -111,27 +115,31 @@ pub fn regions(scene: &Scene, frame: &Frame) -> Regions {
 pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
     let shapes = Shapes::new(scene, frame);
     let splitter = Splitter::new(&shapes, frame, regions);
-    let heads = (0..scene.surfaces.len() as u32).into_par_iter();
-    // Most surfaces touch no others: keep only what came of those that do.
-    let mut cut: Vec<(u32, Option<Vec<Piece>>)> = heads
-        .filter(|number| regions.first(*number) == *number)
-        .flat_map_iter(|number| match regions.members(number) {
-            Some(members) => splitter.together(members),
-            None => splitter.alone(number).into_iter().collect(),
-        })
-        .collect();
-    cut.par_sort_unstable_by_key(|(number, _)| *number);
-    drop(splitter);
-
+    let count = scene.surfaces.len() as u32;
     let mut pieces = Pieces::default();
-    pieces.list.reserve(scene.surfaces.len());
-    let mut cut = cut.into_iter().peekable();
-    for number in 0..scene.surfaces.len() as u32 {
-        match cut.next_if(|(of, _)| *of == number) {
-            Some((_, Some(tiles))) => pieces.list.extend(tiles),
-            failed => {
-                pieces.unsplit += usize::from(failed.is_some());
-                pieces.list.push(shapes.whole(number));
+    pieces.list.reserve(count as usize);
+    // What came of surfaces whose turn is still to come.
+    let mut cut: FxHashMap<u32, Option<Vec<Piece>>> = FxHashMap::default();
+    for begin in (0..count).step_by(BLOCK as usize) {
+        let block = begin..count.min(begin + BLOCK);
+        let numbers = block.clone().into_par_iter();
+        let of_block: Vec<(u32, Option<Vec<Piece>>)> = numbers
+            .filter(|number| regions.first(*number) == *number)
+            .flat_map_iter(|number| match regions.members(number) {
+                Some(members) => splitter.together(members),
+                // Most surfaces touch no others: nothing comes of these.
+                None => splitter.alone(number).into_iter().collect(),
+            })
+            .collect();
+        cut.extend(of_block);
+        for number in block {
+            match cut.remove(&number) {
+                Some(Some(tiles)) => pieces.list.extend(tiles),
+                None if regions.first(number) != number => {}
+                failed => {
+                    pieces.unsplit += usize::from(failed.is_some());
+                    pieces.list.push(shapes.whole(number));
+                }
             }
         }
     }
@@ -201,22 +209,15 @@ impl<'a> Splitter<'a> {
         Some((surface, pieces))
     }
 
-    /// The pieces of a region, by its first surface; those of its members if it cannot be tiled.
+    /// The pieces of a region, by its first surface; those of each of its members if it cannot be tiled.
     fn together(&self, members: &[u32]) -> Vec<(u32, Option<Vec<Piece>>)> {
-        match self.region(members) {
-            Some(pieces) => {
-                let others = members[1..]
-                    .iter()
-                    .map(|member| (*member, Some(Vec::new())));
-                std::iter::once((members[0], Some(pieces)))
-                    .chain(others)
-                    .collect()
-            }
-            None => members
-                .iter()
-                .filter_map(|member| self.alone(*member))
-                .collect(),
+        if let Some(pieces) = self.region(members) {
+            return vec![(members[0], Some(pieces))];
         }
+        let whole = |member: u32| (member, Some(vec![self.shapes.whole(member)]));
+        let each = members.iter().copied();
+        each.map(|member| self.alone(member).unwrap_or_else(|| whole(member)))
+            .collect()
     }
 
     fn region(&self, members: &[u32]) -> Option<Vec<Piece>> {

@@ -4,7 +4,6 @@
 use crate::scene::{Corners, Surface};
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
 /// The least cosine between normals of one region: below it is a bend, however small the triangles are.
 const ALIGNED: f64 = 1.0 - 1e-6;
@@ -12,10 +11,10 @@ const ALIGNED: f64 = 1.0 - 1e-6;
 /// Which surfaces are one.
 #[derive(Debug, Clone, Default)]
 pub struct Regions {
-    /// The members of each region, the lowest first.
-    members: FxHashMap<u32, Vec<u32>>,
-    /// For members of a region its lowest.
-    first: FxHashMap<u32, u32>,
+    /// By surface the lowest of its region; empty if each is alone.
+    first: Vec<u32>,
+    /// The members of all regions of more than one, region by region, the lowest first.
+    members: Vec<u32>,
 }
 
 impl Regions {
@@ -30,27 +29,29 @@ impl Regions {
                 .take_while(move |(of, _)| *of == triangle)
                 .map(|(_, other)| *other)
         };
-        let mut seeds: Vec<(f64, u32)> = neighbours
-            .chunk_by(|x, y| x.0 == y.0)
-            .map(|chunk| {
-                let triangle = chunk[0].0;
-                (
-                    doubled_area(&surfaces[triangle as usize], positions).length(),
-                    triangle,
-                )
-            })
-            .collect();
+        let chunks = neighbours.chunk_by(|x, y| x.0 == y.0);
+        let mut seeds: Vec<(f64, u32)> = Vec::with_capacity(chunks.clone().count());
+        seeds.extend(chunks.map(|chunk| {
+            let triangle = chunk[0].0;
+            let area = doubled_area(&surfaces[triangle as usize], positions);
+            (area.length(), triangle)
+        }));
         // The largest triangle knows the plane best.
-        seeds.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let mut regions = Self::default();
+        seeds.par_sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let mut regions = Self {
+            first: (0..surfaces.len() as u32).collect(),
+            members: Vec::with_capacity(seeds.len()),
+        };
         let mut taken = vec![false; surfaces.len()];
+        let mut members = Vec::new();
         for (_, seed) in seeds {
             if taken[seed as usize] {
                 continue;
             }
             let plane = Plane::of(&surfaces[seed as usize], positions);
             taken[seed as usize] = true;
-            let mut members = vec![seed];
+            members.clear();
+            members.push(seed);
             let mut next = 0;
             while next < members.len() {
                 for other in beside(members[next]) {
@@ -62,24 +63,31 @@ impl Regions {
                 }
                 next += 1;
             }
+            let lowest = members.iter().fold(seed, |lowest, m| lowest.min(*m));
+            for member in &members {
+                regions.first[*member as usize] = lowest;
+            }
             if members.len() > 1 {
-                members.sort_unstable();
-                let first = members[0];
-                regions.first.extend(members.iter().map(|m| (*m, first)));
-                regions.members.insert(first, members);
+                regions.members.extend(&members);
             }
         }
+        let Self { first, members } = &mut regions;
+        members.par_sort_unstable_by_key(|member| (first[*member as usize], *member));
         regions
     }
 
     /// The lowest surface of the region of a surface; itself if it is alone.
     pub fn first(&self, surface: u32) -> u32 {
-        self.first.get(&surface).copied().unwrap_or(surface)
+        self.first.get(surface as usize).copied().unwrap_or(surface)
     }
 
     /// The surfaces of a region by its lowest; `None` for one that is alone.
     pub(super) fn members(&self, first: u32) -> Option<&[u32]> {
-        self.members.get(&first).map(Vec::as_slice)
+        let begin = self.members.partition_point(|m| self.first(*m) < first);
+        let from_there = &self.members[begin..];
+        let others = from_there.iter().take_while(|m| self.first(**m) == first);
+        let members = &from_there[..others.count()];
+        (!members.is_empty()).then_some(members)
     }
 }
 
