@@ -10,7 +10,6 @@ use super::{Lattice, Mesh, NONE, Patch, UNIT};
 use crate::geometry::Sets;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
 /// Patches of which each is smooth with the next if their normals differ by no more than this.
 const SMOOTH: f64 = 35.0;
@@ -24,21 +23,35 @@ const SMALL: f64 = 8.0;
 /// A site whose patches face away from its normal by more than this cosine is none.
 const FACING: f64 = 0.3;
 
+/// In place of the number of a site: the vertex receives for itself.
+const ALONE: u32 = u32::MAX;
+
+/// … or does not receive: it follows the corners of its element.
+const FOLLOWS: u32 = ALONE - 1;
+
 /// What is welded. Empty: each vertex receives for itself.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Weld {
-    /// By vertex there was: the vertex that receives for it, or [`NONE`] if it follows the corners of its element.
-    leader: Vec<u32>,
-    /// Where and with which normal a site receives, by its leader.
-    sites: FxHashMap<u32, (DVec3, Vec3)>,
+    /// By vertex there was: the number of its site, [`ALONE`] or [`FOLLOWS`].
+    site_of: Vec<u32>,
+    sites: Vec<Site>,
     /// Elements whose centres follow.
     followed: Vec<u32>,
+}
+
+/// Where corners receive as one, and with which normal.
+#[derive(Debug, Clone)]
+struct Site {
+    point: DVec3,
+    normal: Vec3,
+    /// The vertex that receives.
+    leader: u32,
 }
 
 impl Mesh {
     /// Welds what makes one surface, or takes it apart.
     pub fn weld_if(&mut self, welded: bool) {
-        let is_welded = !self.weld.leader.is_empty();
+        let is_welded = !self.weld.site_of.is_empty();
         match (welded, is_welded) {
             (true, false) => self.weld(),
             (false, true) => self.weld = Weld::default(),
@@ -47,33 +60,34 @@ impl Mesh {
     }
 
     fn weld(&mut self) {
-        let mut sites = Sets::new(self.vertices.len());
+        let mut joined = Sets::new(self.vertices.len());
         let sides = Sides::new(self, |patch, side| patch.side_key(side).0);
         let shared = sides.list.par_chunk_by(|a, b| sides.are_one(a, b));
         let ends = shared.flat_map_iter(|sides| self.smooth_ends(sides));
         let ends: Vec<[u32; 2]> = ends.collect();
         drop(sides);
         for [a, b] in ends {
-            sites.join(a, b);
+            joined.join(a, b);
         }
+        let members = joined.members();
+        let sites = members.par_chunk_by(|a, b| a.0 == b.0);
         let mut weld = Weld {
-            leader: (0..self.vertices.len() as u32).collect(),
-            ..Weld::default()
+            sites: sites.filter_map(|site| self.settled(site)).collect(),
+            site_of: vec![ALONE; self.vertices.len()],
+            followed: Vec::new(),
         };
-        let members = sites.members();
-        let settled: Vec<(u32, (DVec3, Vec3))> = members
-            .par_chunk_by(|a, b| a.0 == b.0)
-            .filter_map(|site| Some((site[0].0, self.settled(site)?)))
-            .collect();
-        weld.sites = settled.into_iter().collect();
-        for (first, vertex) in members {
-            if weld.sites.contains_key(&first) {
-                weld.leader[vertex as usize] = first;
+        weld.sites.shrink_to_fit();
+        let mut numbered = (0..).zip(&weld.sites).peekable();
+        for site in members.chunk_by(|a, b| a.0 == b.0) {
+            if let Some((number, _)) = numbered.next_if(|(_, of)| of.leader == site[0].0) {
+                for (_, vertex) in site {
+                    weld.site_of[*vertex as usize] = number;
+                }
             }
         }
         for patch in self.patches.iter().filter(|patch| self.is_small(patch)) {
             let root = patch.roots.start;
-            weld.leader[self.elements[root as usize].centre as usize] = NONE;
+            weld.site_of[self.elements[root as usize].centre as usize] = FOLLOWS;
             weld.followed.push(root);
         }
         self.weld = weld;
@@ -81,23 +95,21 @@ impl Mesh {
 
     /// Whether a vertex receives for itself, and for its site.
     pub fn receives(&self, vertex: u32) -> bool {
-        let leader = self.weld.leader.get(vertex as usize);
-        leader.is_none_or(|leader| *leader == vertex)
+        match self.weld.site_of.get(vertex as usize) {
+            Some(&FOLLOWS) => false,
+            _ => self.receiver_for(vertex) == vertex,
+        }
     }
 
     /// The vertex that receives for a vertex: itself, unless it has a site; what follows has none.
     pub fn receiver_for(&self, vertex: u32) -> u32 {
-        let leader = self.weld.leader.get(vertex as usize);
-        leader
-            .copied()
-            .filter(|leader| *leader != NONE)
-            .unwrap_or(vertex)
+        self.site(vertex).map_or(vertex, |site| site.leader)
     }
 
     /// Where a vertex receives, and the normal with which it does.
     pub fn receiver(&self, vertex: u32) -> (DVec3, DVec3) {
-        if let Some((point, normal)) = self.site(vertex) {
-            return (*point, normal.as_dvec3());
+        if let Some(site) = self.site(vertex) {
+            return (site.point, site.normal.as_dvec3());
         }
         let of = &self.vertices[vertex as usize];
         let patch = self.patch(of.patch);
@@ -109,16 +121,16 @@ impl Mesh {
         (self.point_on(&patch, of), normal)
     }
 
-    fn site(&self, vertex: u32) -> Option<&(DVec3, Vec3)> {
-        let leader = self.weld.leader.get(vertex as usize)?;
-        self.weld.sites.get(leader)
+    fn site(&self, vertex: u32) -> Option<&Site> {
+        let number = self.weld.site_of.get(vertex as usize)?;
+        self.weld.sites.get(*number as usize)
     }
 
     /// Gives the values of vertices that receive to those that they receive for; `mean` is that of three or four corners.
     pub fn share<T: Copy>(&self, values: &mut [T], mean: impl Fn(&[T]) -> T) {
-        for (vertex, leader) in self.weld.leader.iter().enumerate() {
-            if *leader != NONE {
-                values[vertex] = values[*leader as usize];
+        for (vertex, number) in self.weld.site_of.iter().enumerate() {
+            if let Some(site) = self.weld.sites.get(*number as usize) {
+                values[vertex] = values[site.leader as usize];
             }
         }
         for element in &self.weld.followed {
@@ -181,8 +193,8 @@ impl Mesh {
         facing && (curved || is_small(a) && is_small(b)) && a.exitance == b.exitance
     }
 
-    /// Where and with which normal the corners in a site receive as one, if they can.
-    fn settled(&self, site: &[(u32, u32)]) -> Option<(DVec3, Vec3)> {
+    /// The site of corners that are joined, if they can receive as one.
+    fn settled(&self, site: &[(u32, u32)]) -> Option<Site> {
         let vertices = || site.iter().map(|(_, vertex)| *vertex);
         let patch_of = |v: u32| self.patch(self.vertices[v as usize].patch);
         let position = self.position(site[0].1);
@@ -197,7 +209,11 @@ impl Mesh {
         // Not below any of its patches.
         let below = |v: u32| -mean.dot(patch_of(v).normal) / normal.dot(patch_of(v).normal);
         let up = vertices().map(below).fold(0.0, f64::max);
-        Some((position + mean + normal * up, normal.as_vec3()))
+        Some(Site {
+            point: position + mean + normal * up,
+            normal: normal.as_vec3(),
+            leader: site[0].0,
+        })
     }
 
     /// The normal inside a patch whose corners have normals of their own.
@@ -206,7 +222,7 @@ impl Mesh {
         let corner = |place: Lattice| {
             let vertex = self.vertex_at(number, place);
             let site = vertex.and_then(|v| self.site(v));
-            site.map_or(patch.normal, |(_, normal)| normal.as_dvec3())
+            site.map_or(patch.normal, |site| site.normal.as_dvec3())
         };
         let [a, b, c, d] =
             [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)].map(|(u, v)| Lattice::new(u, v));
