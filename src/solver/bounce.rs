@@ -53,11 +53,8 @@ impl Solver<'_> {
         let neighbourhoods = self.neighbourhoods.take();
         let neighbourhoods = neighbourhoods.unwrap_or_else(|| {
             let direct = self.course.direct.as_ref();
-            let near = Neighbourhoods::new(&self.mesh, self.visibility);
-            match direct {
-                Some(direct) => near.divided(&self.mesh, &direct.irradiance),
-                None => near,
-            }
+            let direct = direct.map(|direct| &direct.irradiance[..]);
+            Neighbourhoods::new(&self.mesh, self.visibility, direct)
         });
         let arrived = self.arrivals_near(beam, &neighbourhoods);
         let lost = self.escape_of_all(&shooter, power);

@@ -8,11 +8,14 @@
 use super::sheets::{see_one_another, sheets};
 use super::tiling::SIZE;
 use crate::geometry::{facing, jitter, lift};
-use crate::mesh::{Mesh, NONE};
+use crate::mesh::{Mesh, NONE, Patch};
 use crate::radiometry::Spectrum;
 use crate::visibility::{Hit, Ray, Visibility};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+
+/// Ways that a patch may face: out of each side of a cube, as a front or as a back.
+const WAYS: u8 = 12;
 
 /// Slices of a cube.
 const SLICES: u64 = 4;
@@ -50,22 +53,50 @@ pub(super) struct Neighbourhoods {
 }
 
 impl Neighbourhoods {
-    pub fn new(mesh: &Mesh, visibility: &dyn Visibility) -> Self {
-        let side = side(mesh);
-        let sheets = sheets(mesh, visibility, side / SLICES as f64);
-        let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
-        let closeness = closeness(mesh, visibility, side / SLICES as f64);
-        let close = |v: u32| closeness[v as usize];
-        let mut keyed: Vec<(u64, u32, u32)> = (0..mesh.vertices.len() as u32)
-            .into_par_iter()
-            .map(|v| (key(mesh, v, close(v), side), sheet(v), v))
-            .collect();
-        keyed.retain(|(_, _, v)| !mesh.buried[*v as usize]);
+    /// Those of a mesh; if the `direct` light is known, small where much of it is reflected.
+    pub fn new(mesh: &Mesh, visibility: &dyn Visibility, direct: Option<&[Spectrum]>) -> Self {
+        let mut lists = nearby(mesh, visibility);
+        if let Some(direct) = direct {
+            lists = divided(&lists, mesh, direct);
+        }
+        let mut of = vec![NONE; mesh.vertices.len()];
+        for (number, vertices) in (0..).zip(lists.iter()) {
+            for vertex in vertices {
+                of[*vertex as usize] = number;
+            }
+        }
+        Self { lists, of }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
+        self.lists.iter()
+    }
+}
+
+/// The vertices that are in a small cube, face the same way and make one sheet or see one another.
+fn nearby(mesh: &Mesh, visibility: &dyn Visibility) -> Lists {
+    let side = side(mesh);
+    let sheets = sheets(mesh, visibility, side / SLICES as f64);
+    let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
+    let closeness = closeness(mesh, visibility, side / SLICES as f64);
+    let close = |v: u32| closeness[v as usize];
+    let sees = |a: u32, b: u32| {
+        let [from, to] = [a, b].map(|v| above(mesh, v, close(v)));
+        see_one_another(visibility, from, to)
+    };
+    let ways: Vec<u8> = mesh.patches.par_iter().map(|of| way(&of)).collect();
+    let mut near = Lists::with_room(mesh.vertices.len());
+    let (mut facing, mut keyed) = (Vec::new(), Vec::new());
+    // One way of facing after the other: with their keys, all vertices at once would take as much memory as the light on them.
+    for way in 0..WAYS {
+        let faces = |v: &u32| ways[mesh.vertices[*v as usize].patch as usize] == way;
+        let open = (0..mesh.vertices.len() as u32).filter(|v| !mesh.buried[*v as usize]);
+        facing.clear();
+        facing.extend(open.filter(faces));
+        keyed.clear();
+        let numbered = facing.par_iter().copied();
+        keyed.par_extend(numbered.map(|v| (key(mesh, v, close(v), side), sheet(v), v)));
         keyed.par_sort_unstable();
-        let sees = |a: u32, b: u32| {
-            let [from, to] = [a, b].map(|v| above(mesh, v, close(v)));
-            see_one_another(visibility, from, to)
-        };
         let cubes: Vec<Lists> = keyed
             .par_chunk_by(|a, b| a.0 / PARTS == b.0 / PARTS)
             .map(|cube| {
@@ -77,59 +108,33 @@ impl Neighbourhoods {
                 Lists::of(&large)
             })
             .collect();
-        drop(keyed);
-        let mut near = Self::none(mesh);
-        for vertices in cubes.iter().flat_map(Lists::iter) {
-            near.push(vertices);
-        }
-        near
+        let lists = cubes.iter().flat_map(Lists::iter);
+        lists.for_each(|vertices| near.push(vertices));
     }
+    near
+}
 
-    /// None yet.
-    fn none(mesh: &Mesh) -> Self {
-        Self {
-            lists: Lists {
-                vertices: Vec::with_capacity(mesh.vertices.len()),
-                ends: Vec::new(),
-            },
-            of: vec![NONE; mesh.vertices.len()],
-        }
-    }
-
-    /// Adds that of the given vertices.
-    fn push(&mut self, vertices: &[u32]) {
-        for vertex in vertices {
-            self.of[*vertex as usize] = self.lists.ends.len() as u32;
-        }
-        self.lists.push(vertices);
-    }
-
-    /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
-    pub fn divided(self, mesh: &Mesh, direct: &[Spectrum]) -> Self {
-        let reflected = |vertex: u32| {
-            let patch = mesh.vertices[vertex as usize].patch as usize;
-            let reflectance = mesh.patches.reflectance(patch);
-            f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
-        };
-        let all: f64 = self.lists.vertices.iter().map(|v| reflected(*v)).sum();
-        let mut near = Self::none(mesh);
-        for vertices in self.iter() {
-            let mut pending = vec![vertices.to_vec()];
-            while let Some(part) = pending.pop() {
-                let power: f64 = part.iter().map(|v| reflected(*v)).sum();
-                let is_strong = power > all / SHARES;
-                match is_strong.then(|| halves(mesh, &part)).flatten() {
-                    Some(halves) => pending.extend(halves),
-                    None => near.push(&part),
-                }
+/// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
+fn divided(lists: &Lists, mesh: &Mesh, direct: &[Spectrum]) -> Lists {
+    let reflected = |vertex: u32| {
+        let patch = mesh.vertices[vertex as usize].patch as usize;
+        let reflectance = mesh.patches.reflectance(patch);
+        f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
+    };
+    let all: f64 = lists.vertices.iter().map(|v| reflected(*v)).sum();
+    let mut near = Lists::with_room(lists.vertices.len());
+    for vertices in lists.iter() {
+        let mut pending = vec![vertices.to_vec()];
+        while let Some(part) = pending.pop() {
+            let power: f64 = part.iter().map(|v| reflected(*v)).sum();
+            let is_strong = power > all / SHARES;
+            match is_strong.then(|| halves(mesh, &part)).flatten() {
+                Some(halves) => pending.extend(halves),
+                None => near.push(&part),
             }
         }
-        near
     }
-
-    pub fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
-        self.lists.iter()
-    }
+    near
 }
 
 /// Lists of vertices, one after the other: as many lists by themselves would take more memory than the vertices in them.
@@ -141,6 +146,14 @@ struct Lists {
 }
 
 impl Lists {
+    /// None yet, with room for so many vertices.
+    fn with_room(vertices: usize) -> Self {
+        Self {
+            vertices: Vec::with_capacity(vertices),
+            ends: Vec::new(),
+        }
+    }
+
     fn of(lists: &[Vec<u32>]) -> Self {
         let mut all = Self::default();
         lists.iter().for_each(|list| all.push(list));
@@ -168,9 +181,13 @@ fn key(mesh: &Mesh, vertex: u32, close: Closeness, side: f64) -> u64 {
     let [x, y, z] = place.floor().as_i64vec3().to_array();
     let [x, y, z] = [x, y, z].map(|i| (i & 0x3_ffff) as u64);
     let slice = (place[face / 2].rem_euclid(1.0) * SLICES as f64) as u64;
-    let turned = 2 * face as u64 + u64::from(patch.back);
-    let cube = turned << 54 | x << 36 | y << 18 | z;
+    let cube = u64::from(way(&patch)) << 54 | x << 36 | y << 18 | z;
     cube * PARTS + slice * (PARTS / SLICES) + u64::from(close)
+}
+
+/// The way that a patch faces, fronts apart from backs.
+fn way(patch: &Patch) -> u8 {
+    2 * facing(patch.normal) as u8 + u8::from(patch.back)
 }
 
 /// Parts that can see one another put together.
@@ -303,7 +320,7 @@ mod tests {
         let faces_board = |v: u32| mesh.receiver(v).1.z > 0.0;
         let is_covered = |v: &u32| mesh.frame.leave(mesh.receiver(*v).0).y < 0.49;
         let (mut covered, mut open) = (0, 0);
-        let all = Neighbourhoods::new(&mesh, &*engine);
+        let all = Neighbourhoods::new(&mesh, &*engine, None);
         for vertices in all.iter().filter(|vertices| faces_board(vertices[0])) {
             match vertices.iter().filter(|v| is_covered(v)).count() {
                 0 => open += 1,

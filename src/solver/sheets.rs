@@ -19,16 +19,17 @@ pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Ve
         let [a, b] = ends.map(|end| DVec3::from_array(end.map(f64::from_bits)));
         0.5 * (a + b)
     };
-    let shared: Vec<Shared> = sides
+    let shared: Vec<[u32; 2]> = sides
         .list
         .par_windows(2)
         .filter(|pair| sides.are_one(&pair[0], &pair[1]))
-        .map(|pair| Shared(pair[0].patch, pair[1].patch, middle(&pair[0])))
-        .filter(|shared| nothing_between(mesh, visibility, *shared, reach))
+        .map(|pair| ([pair[0].patch, pair[1].patch], middle(&pair[0])))
+        .filter(|(patches, middle)| nothing_between(mesh, visibility, *patches, *middle, reach))
+        .map(|(patches, _)| patches)
         .collect();
     drop(sides);
     let mut sheets = Sets::new(mesh.patches.len());
-    for Shared(a, b, _) in shared {
+    for [a, b] in shared {
         sheets.join(a, b);
     }
     (0..mesh.patches.len() as u32)
@@ -36,20 +37,21 @@ pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Ve
         .collect()
 }
 
-/// Two patches, and the middle of a side that they share.
-#[derive(Clone, Copy)]
-struct Shared(u32, u32, DVec3);
-
 /// The way that a patch faces, fronts apart from backs, and one of its sides.
 fn facing_side(patch: &Patch, side: usize) -> ((usize, bool), SideKey) {
     let facing = (facing(patch.normal), patch.back);
     (facing, patch.side_key(side).0)
 }
 
-/// Whether points a little way in from the middle of the side that two patches share, and as much above, see one another.
-fn nothing_between(mesh: &Mesh, visibility: &dyn Visibility, shared: Shared, reach: f64) -> bool {
-    let Shared(a, b, middle) = shared;
-    let ways = [a, b].map(|number| {
+/// Whether points a little way in from the `middle` of the side that two patches share, and as much above, see one another.
+fn nothing_between(
+    mesh: &Mesh,
+    visibility: &dyn Visibility,
+    patches: [u32; 2],
+    middle: DVec3,
+    reach: f64,
+) -> bool {
+    let ways = patches.map(|number| {
         let patch = mesh.patch(number);
         let corners = patch.corners();
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
