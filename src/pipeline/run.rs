@@ -43,6 +43,7 @@ impl Run {
         let triangles = occluders(&scene, &mesh);
         let begun = Instant::now();
         let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        drop(triangles);
         let engine = begun.elapsed().as_secs_f64();
         check_memory(&mesh, visibility.as_ref(), &options)?;
         let time_limit = options.time_limit;
@@ -89,6 +90,7 @@ impl Run {
         let triangles = occluders(&continuation.scene, &solution.mesh);
         let begun = Instant::now();
         let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
+        drop(triangles);
         report.seconds.engine += begun.elapsed().as_secs_f64();
         let time_limit = options.time_limit;
         let now = blank(
