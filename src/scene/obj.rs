@@ -30,9 +30,9 @@ pub(super) fn read(
         )
     })?;
 
-    let mut polygons = Polygons::with_lines(checked.polygon_lines);
-    let mut welder = Welder::default();
-    for model in &models {
+    let mut polygons = Polygons::with_lines(checked.polygon_lines, checked.corners);
+    let mut welder = Welder::with_room(checked.vertices as usize);
+    for model in models {
         append(
             &mut polygons,
             &model.mesh,

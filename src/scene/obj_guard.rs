@@ -30,7 +30,10 @@ pub(super) struct CheckedObj {
     pub without_material: Tally,
     /// Lines that begin with a word this reader does not know.
     pub unknown: Tally,
-    vertices: i64,
+    /// How many vertices it has …
+    pub vertices: i64,
+    /// … and how many corners of polygons.
+    pub corners: usize,
     forward: Vec<(usize, i64)>,
     current_material: Option<usize>,
     current_group: Option<u32>,
@@ -48,7 +51,7 @@ pub(super) struct UsedMaterial {
 
 /// Checks the whole file.
 pub(super) fn check(file: &TextFile) -> Result<CheckedObj, SceneError> {
-    let mut obj = CheckedObj::default();
+    let mut obj = CheckedObj::with_room(file);
     for (number, line) in file.lines() {
         let mut words = line
             .split_ascii_whitespace()
@@ -89,6 +92,18 @@ pub(super) fn check(file: &TextFile) -> Result<CheckedObj, SceneError> {
 type Fault = (String, String);
 
 impl CheckedObj {
+    /// Nothing yet, with room for all that a file may have: what is not written to takes no memory, but what grows leaves holes.
+    fn with_room(file: &TextFile) -> Self {
+        let (bytes, lines) = (file.text.len(), file.line_at(file.text.len()));
+        Self {
+            vertex_lines: String::with_capacity(bytes),
+            face_lines: String::with_capacity(bytes),
+            polygon_lines: Vec::with_capacity(lines),
+            polygon_groups: Vec::with_capacity(lines),
+            ..Self::default()
+        }
+    }
+
     fn vertex<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
         self.vertex_lines.push('v');
         let mut coordinates = 0;
@@ -140,6 +155,7 @@ impl CheckedObj {
             corners += 1;
         }
         self.face_lines.push('\n');
+        self.corners += corners;
         if !(3..=limits::CORNERS).contains(&corners) {
             let expected = format!("3 to {} corners", limits::CORNERS);
             return Err((format!("a polygon with {corners} corners"), expected));

@@ -18,11 +18,14 @@ pub(super) struct Polygons {
 }
 
 impl Polygons {
-    /// None yet, but the lines where they stand.
-    pub fn with_lines(lines: Vec<u32>) -> Self {
+    /// None yet, but the lines where they stand, with room for these and for so many corners.
+    pub fn with_lines(lines: Vec<u32>, corners: usize) -> Self {
         Self {
+            positions: Vec::new(),
+            corners: Vec::with_capacity(corners),
+            ends: Vec::with_capacity(lines.len()),
+            materials: Vec::with_capacity(lines.len()),
             lines,
-            ..Self::default()
         }
     }
 
@@ -33,12 +36,9 @@ impl Polygons {
 
     /// The position indices of a polygon's corners, in order.
     pub fn corners(&self, polygon: usize) -> &[u32] {
-        let begin = if polygon == 0 {
-            0
-        } else {
-            self.ends[polygon - 1]
-        };
-        &self.corners[begin..self.ends[polygon]]
+        let end = |of: usize| self.ends[of];
+        let begin = polygon.checked_sub(1).map_or(0, end);
+        &self.corners[begin..end(polygon)]
     }
 
     /// Adds one, of position indices.

@@ -16,6 +16,14 @@ pub(super) struct Welder {
 }
 
 impl Welder {
+    /// None yet, with room for so many: a table that grows leaves a hole of each size that it had.
+    pub fn with_room(positions: usize) -> Self {
+        Self {
+            indices: HashMap::with_capacity_and_hasher(positions, Default::default()),
+            positions: Vec::with_capacity(positions),
+        }
+    }
+
     /// The index of a position.
     pub fn index(&mut self, position: DVec3) -> u32 {
         // Adding 0 turns -0 into 0, which is the same place.
