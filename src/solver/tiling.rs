@@ -244,14 +244,21 @@ impl Evenness<'_> {
     /// Which cells of a patch are cut into four, a cell before its parts.
     fn marks(&self, patch: usize, cut: Cut) -> Vec<bool> {
         let of = self.mesh.patch(patch as u32);
-        let mut marks = Vec::new();
         if self.mesh.is_small(&of) || self.light.is_own(self.mesh, patch, Sign::Positive) {
-            return marks;
+            return Vec::new();
         }
-        let mut open: Vec<(Quad, u32)> = cut.whole_cells().into_iter().map(|c| (c, 0)).collect();
-        open.reverse();
+        // A floor may have more cells than all other patches together.
+        let whole = cut.whole_cells().into_par_iter().with_min_len(16);
+        let marks = whole.flat_map_iter(|cell| self.marks_of(patch, cell, cut.is_triangle()));
+        marks.collect()
+    }
+
+    /// Whether a cell is cut into four, and which of its parts are.
+    fn marks_of(&self, patch: usize, whole: Quad, is_triangle: bool) -> Vec<bool> {
+        let mut marks = Vec::new();
+        let mut open = vec![(whole, 0)];
         while let Some((cell, cuts)) = open.pop() {
-            let parts = parts(&cell, cut.is_triangle());
+            let parts = parts(&cell, is_triangle);
             let is_cut = cuts < MOST_CUTS && self.differ(patch, &cell, &parts);
             marks.push(is_cut);
             if is_cut {
