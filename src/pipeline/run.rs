@@ -10,7 +10,7 @@ use crate::solver::{
     Estimate, Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders,
 };
 use crate::threads::pool;
-use crate::visibility::{Clocked, Visibility, build_within};
+use crate::visibility::{Clocked, EngineChoice, Visibility, VisibilityError, build_within};
 use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
@@ -40,11 +40,7 @@ impl Run {
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
-        let triangles = occluders(&scene, &mesh);
-        let begun = Instant::now();
-        let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
-        drop(triangles);
-        let engine = begun.elapsed().as_secs_f64();
+        let (visibility, engine) = engine(&scene, &mesh, (settings.engine, threads), &options)?;
         check_memory(&mesh, visibility.as_ref(), &options)?;
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
@@ -87,11 +83,9 @@ impl Run {
         }
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
-        let triangles = occluders(&continuation.scene, &solution.mesh);
-        let begun = Instant::now();
-        let visibility = build_within(settings.engine, &triangles, threads, options.memory_limit)?;
-        drop(triangles);
-        report.seconds.engine += begun.elapsed().as_secs_f64();
+        let choice = (settings.engine, threads);
+        let (visibility, seconds) = engine(&continuation.scene, &solution.mesh, choice, &options)?;
+        report.seconds.engine += seconds;
         let time_limit = options.time_limit;
         let now = blank(
             &continuation.scene,
@@ -264,6 +258,19 @@ impl Run {
         self.complete = Some(complete);
         Ok(())
     }
+}
+
+/// The engine of a choice, for so many threads, with what of a scene can be in the way of light, and the seconds that building it took.
+fn engine(
+    scene: &Scene,
+    mesh: &Mesh,
+    (choice, threads): (EngineChoice, usize),
+    options: &Options,
+) -> Result<(Box<dyn Visibility>, f64), VisibilityError> {
+    let triangles = occluders(scene, mesh);
+    let begun = Instant::now();
+    let visibility = build_within(choice, &triangles, threads, options.memory_limit)?;
+    Ok((visibility, begun.elapsed().as_secs_f64()))
 }
 
 /// Refuses a mesh that exceeds the limit as it is.
