@@ -63,11 +63,11 @@ impl Regions {
                 }
                 next += 1;
             }
-            let lowest = members.iter().fold(seed, |lowest, m| lowest.min(*m));
-            for member in &members {
-                regions.first[*member as usize] = lowest;
-            }
             if members.len() > 1 {
+                let lowest = members.iter().fold(seed, |lowest, m| lowest.min(*m));
+                for member in &members {
+                    regions.first[*member as usize] = lowest;
+                }
                 regions.members.extend(&members);
             }
         }
