@@ -2,7 +2,7 @@
 
 use super::CliError;
 use super::values::positive;
-use crate::geometry::polygon;
+use crate::geometry;
 use crate::irradiance_at;
 use crate::output::{write_atomically, write_png};
 use crate::radiometry::{Spectrum, WHITE_EFFICACY, photometric};
@@ -114,7 +114,7 @@ fn bounds(solution: &Solution) -> (DVec3, DVec3) {
         .patches
         .iter()
         .flat_map(|patch| patch.corners().to_vec());
-    let (low, high) = polygon::bounds(&Vec::from_iter(corners));
+    let (low, high) = geometry::bounds(corners);
     (mesh.frame.leave(low), mesh.frame.leave(high))
 }
 

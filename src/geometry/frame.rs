@@ -1,5 +1,6 @@
 //! The frame of a solve: the scene recentred and scaled so that single precision serves it.
 
+use super::bounds;
 use glam::DVec3;
 
 /// Maps scene coordinates to solve coordinates: subtract the centre, multiply by a power of two.
@@ -16,11 +17,7 @@ pub struct Frame {
 impl Frame {
     /// The frame of a set of finite points; one point, or none, gives an extent of 64.
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
-        let (low, high) = points
-            .into_iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-                (low.min(p), high.max(p))
-            });
+        let (low, high) = bounds(points);
         if low.x > high.x {
             return Self {
                 centre: DVec3::ZERO,

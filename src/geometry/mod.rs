@@ -23,6 +23,13 @@ pub fn lift(point: DVec3, normal: DVec3, extent: f64) -> DVec3 {
     point + normal * (SURFACE_OFFSET * extent)
 }
 
+/// The box around all points: its lowest and its highest corner; around none, infinity and minus infinity.
+pub fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let points = points.into_iter();
+    points.fold(none, |(low, high), p| (low.min(p), high.max(p)))
+}
+
 /// The face of a cube about the origin, of six, that a normal meets. No two normals that meet the same are more than a right angle
 /// apart by much, so that vector areas of surfaces that face alike never cancel.
 pub fn facing(normal: DVec3) -> usize {

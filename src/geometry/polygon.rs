@@ -29,14 +29,6 @@ pub fn centroid(corners: &[DVec3]) -> DVec3 {
     }
 }
 
-/// The box around all corners: its lowest and its highest point.
-pub fn bounds(corners: &[DVec3]) -> (DVec3, DVec3) {
-    corners.iter().fold(
-        (DVec3::INFINITY, DVec3::NEG_INFINITY),
-        |(low, high), corner| (low.min(*corner), high.max(*corner)),
-    )
-}
-
 /// The longest distance between two corners.
 pub fn diameter(corners: &[DVec3]) -> f64 {
     let mut longest: f64 = 0.0;

@@ -1,7 +1,7 @@
 //! A flat convex piece of a radiating side, and what every pair asks of it.
 
 use super::convex::Convex;
-use crate::geometry::polygon;
+use crate::geometry::{bounds, polygon};
 use glam::DVec3;
 
 /// A convex polygon that radiates from the side from which its corners run counter-clockwise.
@@ -40,7 +40,7 @@ impl Facet {
             .map(|c| c.distance_squared(centroid))
             .fold(0.0, f64::max)
             .sqrt();
-        let (low, high) = polygon::bounds(corners);
+        let (low, high) = bounds(corners.iter().copied());
         let quad = shape.quad();
         Some(Self {
             columns: std::array::from_fn(|axis| quad.map(|corner| corner[axis])),

@@ -6,7 +6,7 @@
 
 use super::facet::Facet;
 use super::silhouette::{Edge, Face, Plane, Planes, Sides};
-use crate::geometry::polygon;
+use crate::geometry::bounds;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -67,7 +67,7 @@ impl Occluder {
         edges: Vec<Edge>,
         members: Range<u32>,
     ) -> Self {
-        let (low, high) = polygon::bounds(&corners);
+        let (low, high) = bounds(corners.iter().copied());
         let centre = (low + high) * 0.5;
         let distances = corners.iter().map(|c| c.distance(centre));
         Self {

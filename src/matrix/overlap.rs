@@ -1,7 +1,8 @@
 //! Surfaces that lie over one another in one plane and face the same way: light would arrive twice.
 
 use super::convex::Convex;
-use crate::geometry::polygon::{bounds, vector_area};
+use crate::geometry::bounds;
+use crate::geometry::polygon::vector_area;
 use crate::scene::NamedScene;
 use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -25,14 +26,14 @@ pub(super) fn overlaps(named: &NamedScene, positions: &[DVec3], extent: f64) -> 
             .collect()
     };
     let boxes = (0..surfaces.len()).map(|k| {
-        let (low, high) = bounds(&corners(k));
+        let (low, high) = bounds(corners(k));
         GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), k)
     });
     let tree = RTree::bulk_load(boxes.collect());
     let mut pairs = Vec::new();
     for k in 0..surfaces.len() {
         let list = corners(k);
-        let (low, high) = bounds(&list);
+        let (low, high) = bounds(list.iter().copied());
         let near = tree
             .locate_in_envelope_intersecting(AABB::from_corners(low.to_array(), high.to_array()));
         let mut others: Vec<usize> = near

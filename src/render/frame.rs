@@ -1,5 +1,6 @@
 //! The frame in which rays are traced: single precision serves there, wherever the scene lies.
 
+use crate::geometry::bounds;
 use glam::{DVec3, Vec3};
 
 /// How far the box around everything reaches beyond it, in units of the frame (whose extent is 64 to 128).
@@ -17,10 +18,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of these positions.
     pub(super) fn around(positions: impl Iterator<Item = DVec3>) -> Self {
-        let (low, high) = positions
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-                (low.min(p), high.max(p))
-            });
+        let (low, high) = bounds(positions);
         let size = high - low;
         let extent = size.max_element();
         if !(extent.is_finite() && extent > 0.0) {

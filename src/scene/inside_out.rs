@@ -5,6 +5,7 @@
 
 use super::polygons::Polygons;
 use super::sides::Bodies;
+use crate::geometry;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -31,7 +32,7 @@ pub(super) fn find(
         if !faces_inwards || set.iter().any(|polygon| shines(*polygon as usize)) {
             continue;
         }
-        let [low, high] = bounds(polygons, set);
+        let (low, high) = bounds(polygons, set);
         let is_near = |p: &DVec3| p.cmpgt(low).all() && p.cmplt(high).all();
         // What is only let into a solid, as a pane into its frame, has no middle there.
         let holds = |(point, other): &(DVec3, &Vec<u32>)| {
@@ -89,18 +90,13 @@ fn surrounds(polygons: &Polygons, set: &[u32], point: DVec3) -> bool {
 
 /// The middle of the box around a set.
 fn middle(polygons: &Polygons, set: &[u32]) -> DVec3 {
-    let [low, high] = bounds(polygons, set);
+    let (low, high) = bounds(polygons, set);
     0.5 * (low + high)
 }
 
-fn bounds(polygons: &Polygons, set: &[u32]) -> [DVec3; 2] {
+fn bounds(polygons: &Polygons, set: &[u32]) -> (DVec3, DVec3) {
     let corners = set
         .iter()
         .flat_map(|polygon| polygons.corners(*polygon as usize));
-    let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    for corner in corners {
-        let position = polygons.positions[*corner as usize];
-        bounds = [bounds[0].min(position), bounds[1].max(position)];
-    }
-    bounds
+    geometry::bounds(corners.map(|corner| polygons.positions[*corner as usize]))
 }

@@ -1,5 +1,6 @@
 //! Planarity, convexity and area of small polygons in space.
 
+use crate::geometry::bounds;
 use glam::DVec3;
 
 /// A polygon whose corners lie no farther from its plane than this fraction of its size is planar.
@@ -32,13 +33,6 @@ pub(super) fn area(corners: &[DVec3]) -> f64 {
 pub(super) fn size(corners: &[DVec3]) -> f64 {
     let (low, high) = bounds(corners.iter().copied());
     (high - low).max_element()
-}
-
-/// The lowest and the highest coordinates of some points.
-pub(super) fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    })
 }
 
 /// Whether the polygon has too little area for a normal.

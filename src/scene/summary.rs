@@ -2,6 +2,7 @@
 
 use super::polygon;
 use super::{Corners, Material, Scene, Sides, Surface};
+use crate::geometry;
 use crate::radiometry::Power;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -73,11 +74,8 @@ impl Scene {
 
     /// The lowest and the highest coordinates of all surfaces, in scene units.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        polygon::bounds(
-            self.surfaces
-                .iter()
-                .flat_map(|surface| self.positions(surface)),
-        )
+        let surfaces = self.surfaces.iter();
+        geometry::bounds(surfaces.flat_map(|surface| self.positions(surface)))
     }
 
     /// Counts and totals for a report.

@@ -1,7 +1,7 @@
 //! Reading the light at points of the scene.
 
 use super::Solution;
-use crate::geometry::polygon;
+use crate::geometry::{self, polygon};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -38,7 +38,7 @@ impl<'a> Prober<'a> {
             .iter()
             .zip(0..)
             .map(|(patch, number)| {
-                let (low, high) = polygon::bounds(patch.corners());
+                let (low, high) = geometry::bounds(patch.corners().iter().copied());
                 GeomWithData::new(
                     Rectangle::from_corners(low.to_array(), high.to_array()),
                     number,

@@ -7,11 +7,11 @@
 
 use super::sheets::{see_one_another, sheets};
 use super::tiling::SIZE;
-use crate::geometry::{facing, jitter, lift};
+use crate::geometry::{bounds, facing, jitter, lift};
 use crate::mesh::{Mesh, NONE, Patch};
 use crate::radiometry::Spectrum;
 use crate::visibility::{Hit, Ray, Visibility};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Ways that a patch may face: out of each side of a cube, as a front or as a back.
@@ -86,16 +86,16 @@ fn nearby(mesh: &Mesh, visibility: &dyn Visibility) -> Lists {
     };
     let ways: Vec<u8> = mesh.patches.par_iter().map(|of| way(&of)).collect();
     let mut near = Lists::with_room(mesh.vertices.len());
-    let (mut facing, mut keyed) = (Vec::new(), Vec::new());
+    let (mut alike, mut keyed) = (Vec::new(), Vec::new());
     // One way of facing after the other: with their keys, all vertices at once would take as much memory as the light on them.
     for way in 0..WAYS {
         let faces = |v: &u32| ways[mesh.vertices[*v as usize].patch as usize] == way;
         let open = (0..mesh.vertices.len() as u32).filter(|v| !mesh.buried[*v as usize]);
-        facing.clear();
-        facing.extend(open.filter(faces));
+        alike.clear();
+        alike.extend(open.filter(faces));
         keyed.clear();
-        let numbered = facing.par_iter().copied();
-        keyed.par_extend(numbered.map(|v| (key(mesh, v, close(v), side), sheet(v), v)));
+        let alike = alike.par_iter().copied();
+        keyed.par_extend(alike.map(|v| (key(mesh, v, close(v), side), sheet(v), v)));
         keyed.par_sort_unstable();
         let cubes: Vec<Lists> = keyed
             .par_chunk_by(|a, b| a.0 / PARTS == b.0 / PARTS)
@@ -172,8 +172,8 @@ impl Lists {
     }
 }
 
-/// The cube that a vertex is in with the way its patch faces, fronts apart from backs, and the slice of the cube across that way: the
-/// inside of a thin box has nothing of the light outside. Last, how close something is in front.
+/// The cube that a vertex is in, and the slice of it across the way that its patch faces: the inside of a thin box has nothing of the light
+/// outside. Last, how close something is in front.
 fn key(mesh: &Mesh, vertex: u32, close: Closeness, side: f64) -> u64 {
     let patch = mesh.patch(mesh.vertices[vertex as usize].patch);
     let face = facing(patch.normal);
@@ -181,7 +181,7 @@ fn key(mesh: &Mesh, vertex: u32, close: Closeness, side: f64) -> u64 {
     let [x, y, z] = place.floor().as_i64vec3().to_array();
     let [x, y, z] = [x, y, z].map(|i| (i & 0x3_ffff) as u64);
     let slice = (place[face / 2].rem_euclid(1.0) * SLICES as f64) as u64;
-    let cube = u64::from(way(&patch)) << 54 | x << 36 | y << 18 | z;
+    let cube = x << 36 | y << 18 | z;
     cube * PARTS + slice * (PARTS / SLICES) + u64::from(close)
 }
 
@@ -206,12 +206,7 @@ fn pooled(parts: Vec<Vec<u32>>, sees: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>
 /// Vertices on either side of the middle of the box around them, across where it is longest; `None` where all are in one place.
 fn halves(mesh: &Mesh, vertices: &[u32]) -> Option<[Vec<u32>; 2]> {
     let point = |v: &u32| mesh.point(*v);
-    let (low, high) = vertices
-        .iter()
-        .map(point)
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-            (low.min(p), high.max(p))
-        });
+    let (low, high) = bounds(vertices.iter().map(point));
     let axis = (high - low).max_position();
     let middle = low.midpoint(high)[axis];
     let (left, right): (Vec<u32>, Vec<u32>) =

@@ -3,6 +3,7 @@
 //! A tree of boxes, packed as `rstar` packs one (overlap-minimising top-down bulk loading, Lee & Lee 2003), but in two flat lists: nodes
 //! that each have a list of their own were a million small pieces of memory, and the holes that they left were there for the whole solve.
 
+use crate::geometry::bounds;
 use crate::scene::Surface;
 use glam::DVec3;
 
@@ -85,14 +86,8 @@ impl Neighbours {
 
 impl Bounds {
     fn around(points: impl Iterator<Item = DVec3>) -> Self {
-        let none = Self {
-            low: DVec3::INFINITY,
-            high: DVec3::NEG_INFINITY,
-        };
-        points.fold(none, |of, point| Self {
-            low: of.low.min(point),
-            high: of.high.max(point),
-        })
+        let (low, high) = bounds(points);
+        Self { low, high }
     }
 
     fn meets(&self, other: &Self) -> bool {
