@@ -78,23 +78,36 @@ pub(super) fn take_in(
     (mesh, light, course)
 }
 
-/// The share of the emitted power on sides that do not radiate from which on it is worth a word.
-const BACKS: f64 = 0.01;
+/// The share of the emitted power on sides that do not radiate from which on it is worth a word …
+const ONTO_BACKS: f64 = 0.01;
 
-/// How the warning of it begins.
+/// … and that which falls on nothing. An open scene may well lose most of its light.
+const INTO_THE_OPEN: f64 = 0.99;
+
+/// How the warnings of them begin.
 const BACKS_SAY: &str = "light falls on the backs of surfaces";
+const OPEN_SAYS: &str = "light leaves the scene";
 
-/// Warns where much of the light is lost on the wrong side of surfaces.
-pub(super) fn warn_of_backs(report: &mut Report) {
-    report
-        .warnings
-        .retain(|known| !known.starts_with(BACKS_SAY));
-    let share = report.power.onto_backs / report.power.emitted;
-    if share > BACKS {
+/// Warns where much of the light is lost: on the wrong side of surfaces, or as emitters look away from everything.
+pub(super) fn warn_of_losses(report: &mut Report) {
+    let is_of_losses =
+        |known: &String| known.starts_with(BACKS_SAY) || known.starts_with(OPEN_SAYS);
+    report.warnings.retain(|known| !is_of_losses(known));
+    let power = &report.power;
+    let onto_backs = power.onto_backs / power.emitted;
+    let into_the_open = (power.escaped - power.onto_backs) / power.emitted;
+    if onto_backs > ONTO_BACKS {
         report.warnings.push(format!(
             "{BACKS_SAY} that radiate from the front only: {:.0}% of the emitted power is lost there. If they should be lit, turn them \
              round or say sides = \"both\" in the scene.toml",
-            100.0 * share
+            100.0 * onto_backs
+        ));
+    }
+    if into_the_open > INTO_THE_OPEN {
+        report.warnings.push(format!(
+            "{OPEN_SAYS} without falling on anything: {:.1}% of the emitted power. Emitters radiate from the front: if these should \
+             light the scene, turn them round",
+            100.0 * into_the_open
         ));
     }
 }

@@ -1,6 +1,6 @@
 //! A solve that can be left and taken up again.
 
-use super::report::{blank, take_in, warn_of_backs};
+use super::report::{blank, take_in, warn_of_losses};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -145,7 +145,7 @@ impl Run {
             }
             _ => last,
         };
-        warn_of_backs(&mut solution.report);
+        warn_of_losses(&mut solution.report);
         solution
     }
 

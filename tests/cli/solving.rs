@@ -237,6 +237,30 @@ fn a_room_turned_inside_out_is_said_to_lose_its_light() {
     assert_eq!(power["onto_backs"], power["escaped"]);
 }
 
+/// A lamp above a floor that looks up.
+#[test]
+fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
+    let folder = folder();
+    let lamp_looking = |order: &str| {
+        let scene = format!(
+            "mtllib lit.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nusemtl floor\nf 1 2 3 4\n\
+             v .4 .5 .4\nv .6 .5 .4\nv .6 .5 .6\nv .4 .5 .6\nusemtl lamp\nf {order}\n"
+        );
+        let path = folder.path().join("lit.obj");
+        fs::write(&path, scene).expect("can be written");
+        let materials = "newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n";
+        fs::write(folder.path().join("lit.mtl"), materials).expect("can be written");
+        let output = folder.path().join("out");
+        let run = radiosity(&["solve", text(&path), "-o", text(&output)]);
+        run.assert_success();
+        run.err
+    };
+    let warning = "light leaves the scene without falling on anything: 100.0% of the emitted power";
+    let (up, down) = (lamp_looking("8 7 6 5"), lamp_looking("5 6 7 8"));
+    assert!(up.contains(warning), "{up}");
+    assert!(!down.contains("light leaves the scene"), "{down}");
+}
+
 #[test]
 fn info_says_what_a_scene_holds() {
     let run = radiosity(&["info", text(&scene("cornell-box"))]);
