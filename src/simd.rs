@@ -88,13 +88,13 @@ impl Isa {
 
 /// Asks for the memory that holds `of`, which is needed soon, and does not wait for it.
 #[inline(always)]
-pub fn prefetch<T>(of: &T) {
+pub fn prefetch<T: ?Sized>(of: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         const LINE: usize = 64;
         let first = std::ptr::from_ref(of).cast::<i8>();
-        for offset in (0..size_of::<T>()).step_by(LINE) {
+        for offset in (0..size_of_val(of)).step_by(LINE) {
             // SAFETY: within `of`; and a prefetch of any address does nothing that can be seen.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(first.add(offset)) };
         }

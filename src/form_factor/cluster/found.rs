@@ -1,6 +1,6 @@
 //! What a point has found on its way through the tree.
 
-use super::Cluster;
+use super::{Aim, Cluster, Clusters};
 use crate::form_factor::Gather;
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
@@ -57,6 +57,8 @@ pub(super) struct Found {
     targets: Vec<Vec3>,
     pool: Pool,
     loose: Loose,
+    /// What is still to be drawn from.
+    drawn: Vec<Drawn>,
 }
 
 impl Found {
@@ -65,11 +67,12 @@ impl Found {
         self.targets.clear();
         self.pool = Pool::default();
         self.loose = Loose::default();
+        self.drawn.clear();
     }
 
-    /// How many parts there are.
+    /// How many parts there are, with those to be drawn.
     pub fn len(&self) -> usize {
-        self.parts.len()
+        self.parts.len() + self.drawn.len()
     }
 
     pub fn targets(&self) -> &[Vec3] {
@@ -112,16 +115,10 @@ impl Found {
         }
     }
 
-    /// Adds a cluster of which no more than `bound` can arrive; gives one to be drawn from when there are enough.
-    pub fn loosen(
-        &mut self,
-        cluster: Cluster,
-        bound: f32,
-        estimate: f32,
-        key: u32,
-    ) -> Option<Drawn> {
+    /// Adds a cluster of which no more than `bound` can arrive. When there are enough, one of them is to be drawn from.
+    pub fn loosen(&mut self, cluster: Cluster, bound: f32, estimate: f32, key: u32) {
         if bound <= 0.0 {
-            return None;
+            return;
         }
         let loose = &mut self.loose;
         loose.bounds += bound;
@@ -130,20 +127,37 @@ impl Found {
             loose.drawn = Some((cluster, bound));
         }
         if loose.bounds >= LOOSE * estimate {
-            self.empty_loose()
-        } else {
-            None
+            self.empty_loose();
         }
     }
 
-    /// One to be drawn from of what is left.
-    pub fn empty_loose(&mut self) -> Option<Drawn> {
+    fn empty_loose(&mut self) {
         let Loose { bounds, drawn } = std::mem::take(&mut self.loose);
-        drawn.map(|(cluster, bound)| Drawn {
+        self.drawn.extend(drawn.map(|(cluster, bound)| Drawn {
             cluster,
             bound,
             stands_for: bounds / bound,
-        })
+        }));
+    }
+
+    /// Draws an aim in all that is to be drawn from, also in what is left; `given` says what arrives from there.
+    #[inline(always)]
+    pub fn draw(
+        &mut self,
+        clusters: &Clusters,
+        key: u32,
+        given: impl Fn(&Drawn, &Aim) -> Spectrum,
+    ) {
+        self.empty_loose();
+        let mut drawn = std::mem::take(&mut self.drawn);
+        clusters.draw(&drawn, key, |of, aim| {
+            let contribution = given(of, &aim);
+            if contribution.max_element() > 0.0 {
+                self.push(contribution, std::iter::once(aim.target));
+            }
+        });
+        drawn.clear();
+        self.drawn = drawn;
     }
 
     /// Adds up the parts; `masks` are those of the fans of its targets.

@@ -7,9 +7,6 @@ use glam::{Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 use std::mem::take;
 
-/// Of the sums that [`Clusters::tile_at`] looks at first, one in so many.
-const STEP: usize = 32;
-
 impl Clusters {
     /// Takes over the radiosity of each tile, in their order; `seed` draws the points that rays are aimed at.
     pub fn radiate(&mut self, radiosity: Vec<Spectrum>, seed: u32) {
@@ -30,7 +27,7 @@ impl Clusters {
         }
         sums.push(sum);
         self.sums = sums;
-        self.steps = self.sums.iter().step_by(STEP).copied().collect();
+        self.steps = Self::steps(&self.sums);
         let (mut nodes, mut sends) = (take(&mut self.nodes), take(&mut self.sends));
         for root in &self.roots {
             if let Cluster::Node(number) = *root {
@@ -91,39 +88,14 @@ impl Clusters {
         self.tiles[tile as usize].area() * self.mean(tile)
     }
 
-    fn aim(&self, tile: u32, at: [f64; 2]) -> Aim {
+    /// An aim at the place (s, t) of a tile.
+    pub(super) fn aim(&self, tile: u32, at: [f64; 2]) -> Aim {
         let of = &self.tiles[tile as usize];
         let [s, t] = at.map(|x| (0.05 + 0.9 * x) as f32);
         Aim {
             target: of.at(s, t) + of.normal * self.offset,
             normal: of.normal,
         }
-    }
-
-    /// An aim in a cluster, drawn anew.
-    pub(super) fn draw(&self, cluster: Cluster, key: u32) -> Aim {
-        let [draw, s] = jitter(key, cluster.key() ^ self.seed);
-        let tile = match cluster {
-            Cluster::Tile(place) => place,
-            Cluster::Node(number) => {
-                let node = &self.nodes[number as usize];
-                let [before, all] = [node.first, node.end].map(|tile| self.sums[tile as usize]);
-                self.tile_at(node, before + draw * (all - before))
-            }
-        };
-        self.aim(tile, [s, jitter(key ^ tile, self.seed)[0]])
-    }
-
-    /// The tile of a cluster in which what all tiles send together reaches `passed`. Among every [`STEP`]th first: these stay in the cache,
-    /// which takes a fifth off the waves of a million triangles.
-    fn tile_at(&self, node: &Node, passed: f64) -> u32 {
-        let (first, end) = (node.first as usize, node.end as usize);
-        let steps = first.div_ceil(STEP)..end / STEP + 1;
-        let step = steps.start + self.steps[steps.clone()].partition_point(|sum| *sum <= passed);
-        let begin = first.max((step * STEP).saturating_sub(STEP));
-        let reached = &self.sums[begin..=end.min(step * STEP)];
-        let place = begin + reached.partition_point(|sum| *sum <= passed);
-        place.clamp(first + 1, end) as u32 - 1
     }
 
     /// What a tile sends.

@@ -10,6 +10,7 @@
 //! (`walk.rs`); one ray goes to what is large enough for it (`found.rs`).
 
 mod build;
+mod draw;
 mod found;
 mod gather;
 mod light;

@@ -1,6 +1,6 @@
 //! The way through the tree: a few points side by side, each down to the coarsest clusters that its thresholds allow.
 
-use super::found::{Drawn, Found};
+use super::found::Found;
 use super::view::{LANES, Mask, Row, Rows, Views, lanes, mask};
 use super::{Cluster, Clusters, Node, Tile};
 use crate::form_factor::disk::point_to_disk;
@@ -79,10 +79,8 @@ impl Kernel for Walk<'_> {
             self.open(cluster, &node, opened, &mut limits);
         }
         for lane in lanes(all) {
-            if let Some(drawn) = self.points[lane].empty_loose() {
-                self.draw(lane, drawn, &rows);
-            }
             self.points[lane].empty_pool();
+            self.draw(lane, &rows);
         }
     }
 }
@@ -256,7 +254,7 @@ impl Walk<'_> {
         self.points[lane].pool(contribution, target, estimate, key);
     }
 
-    /// Takes what may be seen of a cluster in part, were it all at a point drawn of it.
+    /// Takes what may be seen of a cluster in part: were it all at its aim, or at a point that is yet to be drawn.
     #[inline(always)]
     fn take_part(
         &mut self,
@@ -275,20 +273,18 @@ impl Walk<'_> {
         }
         for lane in lanes(by) {
             let (estimate, key) = (limits.estimate[lane], self.receivers[lane].1);
-            let drawn = self.points[lane].loosen(cluster, bound[lane], estimate, key);
-            drawn
-                .into_iter()
-                .for_each(|drawn| self.draw(lane, drawn, rows));
+            self.points[lane].loosen(cluster, bound[lane], estimate, key);
         }
     }
 
-    fn draw(&mut self, lane: usize, drawn: Drawn, rows: &Rows) {
-        let sends = self.clusters.sends(drawn.cluster);
-        let aim = self.clusters.draw(drawn.cluster, self.receivers[lane].1);
-        let contribution = sends.drawn(&aim, rows, lane, drawn.bound) * drawn.stands_for;
-        if contribution.max_element() > 0.0 {
-            self.points[lane].push(contribution, std::iter::once(aim.target));
-        }
+    /// Takes what a point has put off: what may be seen of clusters in part, were they all at a point drawn of them.
+    #[inline(always)]
+    fn draw(&mut self, lane: usize, rows: &Rows) {
+        let (clusters, key) = (self.clusters, self.receivers[lane].1);
+        self.points[lane].draw(clusters, key, |of, aim| {
+            let sends = clusters.sends(of.cluster);
+            sends.drawn(aim, rows, lane, of.bound) * of.stands_for
+        });
     }
 
     /// What a point sees of a tile from in front. Clusters take Eq. (1) where the five-times rule would; a single tile is near.
