@@ -170,7 +170,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     write_atomically(&beside(&arguments.output, "certificate.json"), |out| {
         out.write_all(&text)
     })?;
-    print!("{}", summary(&report));
+    say::result(summary(&report))?;
     Ok(Code::Success)
 }
 

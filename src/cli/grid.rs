@@ -1,7 +1,7 @@
 //! `radiosity probe --grid`: illuminance on a plane of work.
 
-use super::CliError;
 use super::values::positive;
+use super::{CliError, say};
 use crate::geometry;
 use crate::irradiance_at;
 use crate::output::{write_atomically, write_png};
@@ -66,11 +66,10 @@ impl GridFlags {
         match output {
             Some(path) => {
                 write_atomically(path, |out| out.write_all(&table))?;
-                print!("{summary}");
+                say::result(summary)?;
             }
             None => {
-                let refused = |e| CliError::System(format!("cannot write: {e}"));
-                std::io::stdout().write_all(&table).map_err(refused)?;
+                say::result(&table)?;
                 eprint!("{summary}");
             }
         }
@@ -159,12 +158,14 @@ fn table(
 fn summary(plane: &Plane, lux: &[Option<f64>]) -> String {
     let (columns, rows) = (plane.columns, plane.rows);
     let Some(levels) = Levels::of(lux.iter().flatten().copied()) else {
-        return format!("{columns} x {rows} points, all of them inside solids\n");
+        return format!(
+            "{columns} x {rows} points, all of them inside solids or outside of rooms\n"
+        );
     };
     let inside = lux.len() - levels.points;
     let left_out = match inside {
         0 => String::new(),
-        n => format!(", {n} of them inside solids and left out"),
+        n => format!(", {n} of them inside solids or outside of rooms and left out"),
     };
     format!(
         "{columns} x {rows} points{left_out}\n\

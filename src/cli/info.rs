@@ -18,7 +18,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let scene = Scene::load(&arguments.scene)?;
     say::warnings(&scene.warnings);
-    print!("{}", describe(&scene, &scene.summary()));
+    say::result(describe(&scene, &scene.summary()))?;
     Ok(Code::Success)
 }
 

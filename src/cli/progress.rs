@@ -119,7 +119,7 @@ impl Watch {
         let recent = |told: Instant| told.elapsed() < PAUSE;
         if self.json && !self.told.is_some_and(recent) {
             self.told = Some(Instant::now());
-            println!("{}", line(now, unshot, done));
+            say::line(line(now, unshot, done));
         }
     }
 

@@ -1,6 +1,7 @@
-//! What the command says besides its results: warnings, counted, and errors; in colour on a terminal only.
+//! What the command says: results on standard output; warnings, counted, and errors beside it, in colour on a terminal only.
 
-use std::io::IsTerminal;
+use super::CliError;
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Set by `--quiet`.
@@ -17,6 +18,22 @@ pub(super) fn be_quiet() {
 /// Whether nothing but errors is to be said.
 pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
+}
+
+/// A result on standard output. That whoever reads has read enough is no failure.
+pub(super) fn result(text: impl AsRef<[u8]>) -> Result<(), CliError> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::System(format!(
+            "cannot write to standard output: {error}"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// A line on standard output in the course of the work, which goes on if nobody can read it.
+pub(super) fn line(text: impl std::fmt::Display) {
+    let _ = result(format!("{text}\n"));
 }
 
 /// One line of warning.

@@ -106,12 +106,12 @@ impl Session<'_> {
         }
         let seconds = self.started.elapsed().as_secs_f64();
         match look {
-            Look::Json => println!("{}", self.done(&solution)?),
+            Look::Json => say::result(format!("{}\n", self.done(&solution)?))?,
             _ if is_quiet() => {}
             _ => {
-                print!("{}", summary(&solution, seconds));
+                say::result(summary(&solution, seconds))?;
                 if self.how.profile {
-                    print!("{}", profile(&solution.report));
+                    say::result(profile(&solution.report))?;
                 }
             }
         }

@@ -1,13 +1,12 @@
 //! `radiosity completions` and `radiosity man`: what packagers and shells want.
 
-use super::CliError;
 use super::error::Code;
 use super::solve::prepare;
+use super::{CliError, say};
 use crate::output::write_atomically;
 use clap::{Args, Command};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -28,12 +27,8 @@ pub(super) struct Pages {
 pub(super) fn completions(arguments: &Completions, mut command: Command) -> Result<Code, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "radiosity", &mut script);
-    match std::io::stdout().write_all(&script) {
-        // Whoever reads has read enough.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(Code::Success),
-        Err(error) => Err(CliError::System(format!("cannot write: {error}"))),
-        Ok(()) => Ok(Code::Success),
-    }
+    say::result(&script)?;
+    Ok(Code::Success)
 }
 
 /// Writes the man pages of `command` and of what is below it.

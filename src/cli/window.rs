@@ -29,7 +29,7 @@ pub(super) fn view(arguments: &Arguments) -> Result<Code, CliError> {
     );
     let viewer = Viewer::new(cameras, 0, shown.exhibit.extent());
     let hooks = Hooks {
-        read: &mut |reading: &Reading| println!("{reading}"),
+        read: &mut |reading: &Reading| say::line(reading),
         is_over: &|| false,
     };
     window.run(&shown.name, viewer, shown.exhibit, arguments.engine, hooks)?;
@@ -91,7 +91,7 @@ impl Watching {
         let silent = is_quiet() || session.how.look() == Look::Json;
         let mut read = |reading: &Reading| {
             if !silent {
-                println!("{reading}");
+                say::line(reading);
             }
         };
         let hooks = Hooks {

@@ -1,10 +1,11 @@
 //! `radiosity solve`, `radiosity info`.
 
-use super::{draft, floor, folder, names, radiosity, scene, text};
+use super::{Run, command, draft, floor, folder, names, radiosity, scene, text};
 use radiosity::solution::Solution;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use std::process::Stdio;
 
 fn report(folder: &Path) -> Value {
     let bytes = std::fs::read(folder.join("report.json")).expect("report.json is there");
@@ -259,6 +260,25 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
     let (up, down) = (lamp_looking("8 7 6 5"), lamp_looking("5 6 7 8"));
     assert!(up.contains(warning), "{up}");
     assert!(!down.contains("light leaves the scene"), "{down}");
+}
+
+#[test]
+fn a_solve_whose_progress_nobody_reads_any_more_is_not_lost() {
+    let folder = folder();
+    let output = folder.path().join("out");
+    let box_ = scene("cornell-box");
+    let arguments = ["solve", text(&box_), "-o", text(&output), "--no-pictures"];
+    let child = command()
+        .args(arguments)
+        .args(["--preset", "draft", "--progress", "json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut child = child.expect("can be started");
+    drop(child.stdout.take());
+    let run: Run = child.wait_with_output().expect("ends").into();
+    run.assert_success();
+    assert!(output.join("solution.rad").exists() && output.join("report.json").exists());
 }
 
 #[test]
