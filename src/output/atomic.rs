@@ -20,7 +20,8 @@ pub struct WriteError {
 }
 
 /// Writes `path` through `fill`: into a temporary file of the same folder first, which takes the real name only when
-/// all of it has reached the disk. A reader never sees half a file, and an interrupted run keeps the previous one.
+/// all of it has reached the disk. A reader never sees half a file, and an interrupted run keeps the previous one. Of a link it is the file
+/// behind it that is written; what is no file, a device or a pipe, is written to as it is.
 ///
 /// # Errors
 /// When the folder cannot be written to, the disk is full, `path` is a folder, or `fill` fails.
@@ -38,6 +39,12 @@ fn fill_and_rename(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> io::Result<()> {
+    let path = &followed(path);
+    if is_special(path) {
+        let mut writer = BufWriter::new(OpenOptions::new().write(true).open(path)?);
+        fill(&mut writer)?;
+        return writer.flush();
+    }
     let (draft, file) = Draft::create(path)?;
     let mut writer = BufWriter::new(file);
     fill(&mut writer)?;
@@ -45,6 +52,16 @@ fn fill_and_rename(
     writer.get_ref().sync_all()?;
     drop(writer);
     draft.publish(path)
+}
+
+/// Where a path leads to, through links.
+fn followed(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
+/// Whether there is something that is neither a file nor a folder.
+fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|of| !of.is_file() && !of.is_dir())
 }
 
 /// Removes the temporary files that killed processes have left in `folder`; those of living ones stay.
@@ -77,7 +94,11 @@ fn is_alive(process: u32) -> bool {
 /// # Errors
 /// When the folder cannot be written to, or `path` names no file or a folder.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
-    let reason = match Draft::create(path) {
+    let target = followed(path);
+    if is_special(&target) {
+        return Ok(());
+    }
+    let reason = match Draft::create(&target) {
         Ok(_) if !path.is_dir() => return Ok(()),
         Ok(_) => io::ErrorKind::IsADirectory.into(),
         Err(reason) => reason,

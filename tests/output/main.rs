@@ -197,6 +197,30 @@ fn round_trip(mesh: &LitMesh) -> Result<Ply, Box<dyn Error>> {
     Ok(ply)
 }
 
+/// A table that goes to a pipe or to `/dev/stdout` must not take the place of it.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_written_to_as_it_is_and_links_are_followed() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let [pipe, file, link] = ["pipe", "real.csv", "link.csv"].map(|name| folder.path().join(name));
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status()?;
+    assert!(made.success());
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read_to_string(pipe)
+    });
+    write_atomically(&pipe, |out| out.write_all(b"read"))?;
+    assert_eq!(reader.join().expect("does not panic")?, "read");
+
+    fs::write(&file, "before")?;
+    std::os::unix::fs::symlink("real.csv", &link)?;
+    write_atomically(&link, |out| out.write_all(b"after"))?;
+    assert_eq!(fs::read_to_string(&file)?, "after");
+    assert!(fs::symlink_metadata(&link)?.is_symlink());
+    assert_eq!(fs::read_dir(folder.path())?.count(), 3);
+    Ok(())
+}
+
 #[test]
 fn ply_reads_back_the_same() -> Outcome {
     let mesh = small_mesh(DVec3::ZERO);
