@@ -17,7 +17,7 @@ use crate::visibility::{Ray, Triangles, Visibility};
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-/// Rays that tell the inside of a solid from the open.
+/// Rays that tell the inside of a solid from the open, and a room from what is outside of it.
 const RAYS: u32 = 32;
 
 /// A solved mesh to be measured: what occludes, and what radiates.
@@ -91,7 +91,8 @@ impl<'a> OpenLight<'a> {
     }
 
     /// Irradiance, W/m², at points and unit normals in the frame of the mesh, from all that the mesh emits and reflects, with
-    /// sources sampled as finely as for the estimate of errors. `None` where all that is seen is the inside of a solid.
+    /// sources sampled as finely as for the estimate of errors. `None` where all that is seen is the inside of a solid, and where nothing
+    /// arrives as nothing that could radiate is seen in any direction: outside of all rooms.
     /// `visibility` answers for [`Self::occluders`].
     pub fn irradiance(
         &self,
@@ -120,7 +121,10 @@ impl<'a> OpenLight<'a> {
         let second = self.gather(visibility, FINER, &receivers(&first));
         let mut found = vec![None; places.len()];
         for (number, irradiance) in outside.iter().zip(second) {
-            found[*number as usize] = Some(irradiance);
+            let place = places[*number as usize];
+            let is_within =
+                irradiance != Spectrum::ZERO || self.sees_any(visibility, place, *number);
+            found[*number as usize] = is_within.then_some(irradiance);
         }
         found
     }
@@ -164,27 +168,52 @@ impl<'a> OpenLight<'a> {
     }
 
     /// Whether some ray of the hemisphere reaches the open, or a side that radiates.
-    fn is_outside(
+    fn is_outside(&self, visibility: &dyn Visibility, place: (DVec3, DVec3), number: u32) -> bool {
+        let ends = self.ends(visibility, place, number);
+        !ends.iter().all(|end| *end == End::Dark)
+    }
+
+    /// Whether some ray, in whatever direction, reaches a side that radiates.
+    fn sees_any(
         &self,
         visibility: &dyn Visibility,
         (point, normal): (DVec3, DVec3),
         number: u32,
     ) -> bool {
-        let ray = |ray: u32| {
-            let [s, t] = jitter(number, ray ^ 0x6f70_656e);
-            let share = (f64::from(ray) + s) / f64::from(RAYS);
+        let around = [normal, -normal].map(|normal| self.ends(visibility, (point, normal), number));
+        around.as_flattened().contains(&End::Radiating)
+    }
+
+    /// Where rays of the hemisphere end.
+    fn ends(
+        &self,
+        visibility: &dyn Visibility,
+        (point, normal): (DVec3, DVec3),
+        number: u32,
+    ) -> [End; RAYS as usize] {
+        let rays: [Ray; RAYS as usize] = std::array::from_fn(|ray| {
+            let [s, t] = jitter(number, ray as u32 ^ 0x6f70_656e);
+            let share = (ray as f64 + s) / f64::from(RAYS);
             Ray {
                 origin: point.as_vec3(),
                 direction: cosine_direction(normal, [share, t]).as_vec3(),
             }
-        };
-        let rays: Vec<Ray> = (0..RAYS).map(ray).collect();
+        });
         let mut hits = Vec::new();
         visibility.nearest(&rays, &mut hits);
-        let dark = |(hit, ray): (&Option<_>, &Ray)| {
-            let hit = hit.as_ref();
-            hit.is_some_and(|hit| is_dark(hit, ray, &self.backing))
-        };
-        !hits.iter().zip(&rays).all(dark)
+        std::array::from_fn(|ray| match &hits[ray] {
+            None => End::Open,
+            Some(hit) if is_dark(hit, &rays[ray], &self.backing) => End::Dark,
+            Some(_) => End::Radiating,
+        })
     }
+}
+
+/// Where a ray ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Open,
+    /// On a side that does not radiate.
+    Dark,
+    Radiating,
 }

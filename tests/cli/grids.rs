@@ -109,6 +109,40 @@ fn a_plane_of_work_has_the_illuminance_of_the_closed_form() {
     assert!(picture.width > 400 && picture.colours.contains(&[255; 3]));
 }
 
+/// A closed room of L shape with a lamp: a quarter of the box around it is outside.
+#[test]
+fn points_outside_of_the_room_are_left_out() {
+    let folder = folder();
+    let plan = [[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]];
+    let mut room = String::from("mtllib it.mtl\n");
+    for y in [0, 3] {
+        plan.iter()
+            .for_each(|[x, z]| room += &format!("v {x} {y} {z}\n"));
+    }
+    room += "usemtl wall\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\n";
+    for i in 0..6 {
+        let (a, b) = (i + 1, (i + 1) % 6 + 1);
+        room += &format!("f {a} {b} {} {}\n", b + 6, a + 6);
+    }
+    room += "v .8 2.9 .8\nv 1.2 2.9 .8\nv 1.2 2.9 1.2\nv .8 2.9 1.2\nusemtl lamp\nf 13 14 15 16\n";
+    let path = folder.path().join("it.obj");
+    fs::write(&path, room).expect("can be written");
+    let materials = "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 9 9 9\n";
+    fs::write(folder.path().join("it.mtl"), materials).expect("can be written");
+    let output = folder.path().join("out");
+    let solve = ["solve", text(&path), "-o", text(&output), "--no-pictures"];
+    radiosity(&[&solve[..], &["--preset", "draft"]].concat()).assert_success();
+    for grid in ["y=1", "-y=1"] {
+        let run = radiosity(&["probe", text(&output), "--grid", grid, "--spacing", "0.25"]);
+        run.assert_success();
+        let said = "16 x 16 points, 64 of them inside solids or outside of rooms and left out";
+        assert!(run.err.contains(said), "{}", run.err);
+    }
+    let run = radiosity(&["probe", text(&output), "--grid", "y=5"]);
+    run.assert_success();
+    assert!(run.err.contains("all of them"), "{}", run.err);
+}
+
 #[test]
 fn planes_face_either_way_and_points_in_solids_are_left_out() {
     let (_folder, solution) = draft("cornell-box");
@@ -120,7 +154,8 @@ fn planes_face_either_way_and_points_in_solids_are_left_out() {
     let run = probe("y=100mm", &["--spacing", "0.05m"]);
     run.assert_success();
     assert!(
-        run.err.contains("of them inside solids and left out"),
+        run.err
+            .contains("of them inside solids or outside of rooms and left out"),
         "{}",
         run.err
     );
