@@ -183,6 +183,21 @@ fn reflectance_is_the_mean_of_the_texture_under_the_polygon() {
     assert!(mean(&upper).distance(Vec3::X) < 1e-6);
 }
 
+/// White and black tiles, as large as half the texture and as small as a hundredth of the square.
+#[test]
+fn a_texture_that_is_repeated_often_has_the_same_mean() {
+    let tile = |i: u32| [if (i % 8 < 4) ^ (i / 8 < 4) { 255 } else { 0 }; 3];
+    let tiles: Vec<[u8; 3]> = (0..64).map(tile).collect();
+    let mut document = textured("image/png", &png(8, 8, &tiles));
+    document["extensionsUsed"] = json!(["KHR_texture_transform"]);
+    for repeats in [1, 2, 8, 16, 32, 50] {
+        document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
+            json!({ "KHR_texture_transform": { "scale": [repeats, repeats] } });
+        let mean = mean(&document);
+        assert!((mean - 0.5).abs().max_element() < 0.02, "{repeats}: {mean}");
+    }
+}
+
 #[test]
 fn polygons_of_one_material_have_the_colours_of_their_places() {
     // Each corner of the square has a texel, and the triangles are bent apart.

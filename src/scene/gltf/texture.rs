@@ -2,13 +2,14 @@
 
 use super::file::File;
 use crate::codec::{Pixels, decode_jpeg, decode_png};
+use crate::geometry::jitter;
 use crate::radiometry::linear;
 use ::gltf::image::Source;
 use ::gltf::texture::WrappingMode;
 use glam::{DVec2, DVec3};
 
-/// The most samples along the side of a triangle: a mean over more is no better.
-const MOST_SAMPLES: f64 = 32.0;
+/// Samples along the side of a triangle, at least and at most; in between two for each texel.
+const SAMPLES: [f64; 2] = [16.0, 64.0];
 
 /// A corner of a triangle, in space and in the textures of its material: base colour, emission.
 #[derive(Debug, Clone, Copy)]
@@ -57,12 +58,14 @@ impl Texture {
         }
     }
 
-    /// The mean over a triangle in the texture, from the middles of equal triangles.
+    /// The mean over a triangle in the texture, from a point in each of equal triangles: anywhere in it, as evenly spaced ones may all fall
+    /// on the same places of a pattern.
     fn mean_of(&self, [a, b, c]: [DVec2; 3]) -> DVec3 {
         let size = DVec2::new(f64::from(self.pixels.width), f64::from(self.pixels.height));
         let texels = [b - a, c - b, a - c].map(|side| (side * size).length());
         let longest = texels.into_iter().fold(0.0, f64::max);
-        let n = longest.ceil().clamp(2.0, MOST_SAMPLES) as u32;
+        let [least, most] = SAMPLES;
+        let n = (2.0 * longest).ceil().clamp(least, most) as u32;
         let at = |u: f64, v: f64| {
             let step = 1.0 / f64::from(n);
             self.texel(a + (b - a) * u * step + (c - a) * v * step)
@@ -71,9 +74,15 @@ impl Texture {
         for i in 0..n {
             for j in 0..n - i {
                 let (u, v) = (f64::from(i), f64::from(j));
-                sum += at(u + 1.0 / 3.0, v + 1.0 / 3.0);
+                let [s, t] = jitter(i, j);
+                let (s, t) = if s + t < 1.0 {
+                    (s, t)
+                } else {
+                    (1.0 - s, 1.0 - t)
+                };
+                sum += at(u + s, v + t);
                 if i + j + 1 < n {
-                    sum += at(u + 2.0 / 3.0, v + 2.0 / 3.0);
+                    sum += at(u + 1.0 - t, v + 1.0 - s);
                 }
             }
         }
