@@ -4,7 +4,7 @@ use super::CliError;
 use super::error::Code;
 use super::meshes::{Exporter, MeshFormat};
 use super::solve::SOLUTION;
-use super::values::positive;
+use super::values::{finite, positive};
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::Tone;
 use crate::solution::Solution;
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Exposure of the colours in stops; chosen from the solution if this is left out
-    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true, value_parser = finite)]
     exposure: Option<f64>,
     /// Lumens per watt, for illuminance; 1 if the emitters were given in lumens
     #[arg(long, value_name = "LM/W", default_value_t = WHITE_EFFICACY, value_parser = positive)]

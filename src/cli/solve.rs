@@ -184,8 +184,10 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     };
     std::fs::create_dir_all(folder).map_err(refuse)?;
     let probe = folder.join(".radiosity-writable");
-    std::fs::write(&probe, vec![0; PROBE]).map_err(refuse)?;
-    std::fs::remove_file(&probe).map_err(refuse)?;
+    let written = std::fs::write(&probe, vec![0; PROBE]);
+    // Of a full disk too, nothing may stay.
+    let removed = std::fs::remove_file(&probe);
+    written.and(removed).map_err(refuse)?;
     remove_abandoned(folder);
     Ok(())
 }

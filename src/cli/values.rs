@@ -57,6 +57,10 @@ fn number(text: &str, allowed: impl Fn(f64) -> bool, expected: &str) -> Result<f
     }
 }
 
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    number(text, f64::is_finite, "a number")
+}
+
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |v| v > 0.0 && v < 1e9, "a positive number")
 }

@@ -1,6 +1,7 @@
 //! From where, with what field of view, how large and how bright: the flags of `render` and `view`.
 
 use super::CliError;
+use super::values::finite;
 use crate::scene::Camera;
 use clap::Args;
 use glam::DVec3;
@@ -26,7 +27,7 @@ pub(super) struct Viewpoint {
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=16384))]
     height: Option<u32>,
     /// Exposure in stops; chosen from the picture if neither this nor the scene says
-    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true, value_parser = finite)]
     exposure: Option<f64>,
 }
 

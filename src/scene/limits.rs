@@ -1,7 +1,7 @@
 //! The bounds of what a scene may hold, each far outside of what any real one does.
 
-/// The largest coordinate, in scene units: products of three stay finite.
-pub(super) const COORDINATE: f64 = 1e60;
+/// The largest coordinate, in scene units: as large as what the visibility engines take.
+pub(super) const COORDINATE: f64 = 1e18;
 
 /// The most corners of one polygon: splitting one takes time that grows with their square.
 pub(super) const CORNERS: usize = 4096;

@@ -63,7 +63,7 @@ fn text_that_is_not_utf8() {
 
 #[test]
 fn coordinates() {
-    let finite = "expected a finite coordinate, at most 1e60";
+    let finite = "expected a finite coordinate, at most 1e18";
     obj_line_is_refused(
         "v 0 nan 0",
         &format!("found the coordinate `nan`; {finite}"),
