@@ -1,9 +1,9 @@
 //! `radiosity probe`.
 
-use super::CliError;
 use super::error::Code;
 use super::grid::GridFlags;
 use super::solve::SOLUTION;
+use super::{CliError, say};
 use crate::output::write_atomically;
 use crate::solution::{Probe, Prober, Solution};
 use clap::Args;
@@ -52,9 +52,7 @@ fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Co
     let (table, missed) = probe_table(solution, points)?;
     match &arguments.output {
         Some(path) => write_atomically(path, |out| out.write_all(&table))?,
-        None => std::io::stdout()
-            .write_all(&table)
-            .map_err(|e| CliError::System(format!("cannot write: {e}")))?,
+        None => say::result(&table)?,
     }
     if missed > 0 {
         eprintln!("{missed} points lie on no surface that faces their way and were left empty");
