@@ -24,21 +24,22 @@ mod near;
 mod outline;
 mod quads;
 mod regions;
+mod shapes;
 mod straighten;
 mod tile;
 
 use crate::geometry::{Frame, polygon};
-use crate::scene::{Scene, Surface};
+use crate::scene::Scene;
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
 use glam::DVec3;
 use grade::{Grading, grade};
 use lines::Line;
 use near::Neighbours;
-use outline::Outlines;
 use quads::{FAIR, flatness};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use shapes::Shapes;
 use straighten::straighten;
 use tile::tile;
 
@@ -144,37 +145,6 @@ pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
         }
     }
     pieces
-}
-
-/// The surfaces of a scene, in the frame.
-struct Shapes<'a> {
-    surfaces: &'a [Surface],
-    positions: Vec<DVec3>,
-    outlines: Outlines,
-}
-
-impl<'a> Shapes<'a> {
-    fn new(scene: &'a Scene, frame: &Frame) -> Self {
-        Self {
-            surfaces: &scene.surfaces,
-            positions: scene.positions_in(frame),
-            outlines: Outlines::new(&scene.surfaces),
-        }
-    }
-
-    fn corners(&self, surface: u32) -> Vec<DVec3> {
-        let corners = self.surfaces[surface as usize].corners;
-        let corners = corners.indices().iter();
-        corners.map(|v| self.positions[*v as usize]).collect()
-    }
-
-    fn outline(&self, surface: u32) -> [bool; 4] {
-        self.outlines.of(&self.surfaces[surface as usize])
-    }
-
-    fn whole(&self, surface: u32) -> Piece {
-        Piece::new(surface, &self.corners(surface), self.outline(surface))
-    }
 }
 
 /// What it takes to split surfaces.

@@ -1,0 +1,38 @@
+//! The surfaces of a scene, as they are split.
+
+use super::Piece;
+use super::outline::Outlines;
+use crate::geometry::Frame;
+use crate::scene::{Scene, Surface};
+use glam::DVec3;
+
+/// The surfaces of a scene, in the frame.
+pub(super) struct Shapes<'a> {
+    pub surfaces: &'a [Surface],
+    pub positions: Vec<DVec3>,
+    outlines: Outlines,
+}
+
+impl<'a> Shapes<'a> {
+    pub fn new(scene: &'a Scene, frame: &Frame) -> Self {
+        Self {
+            surfaces: &scene.surfaces,
+            positions: scene.positions_in(frame),
+            outlines: Outlines::new(&scene.surfaces),
+        }
+    }
+
+    pub fn corners(&self, surface: u32) -> Vec<DVec3> {
+        let corners = self.surfaces[surface as usize].corners;
+        let corners = corners.indices().iter();
+        corners.map(|v| self.positions[*v as usize]).collect()
+    }
+
+    pub fn outline(&self, surface: u32) -> [bool; 4] {
+        self.outlines.of(&self.surfaces[surface as usize])
+    }
+
+    pub fn whole(&self, surface: u32) -> Piece {
+        Piece::new(surface, &self.corners(surface), self.outline(surface))
+    }
+}
