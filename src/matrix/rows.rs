@@ -72,7 +72,7 @@ impl Rows {
             .map(|area| divided(scene, area / scene.metres_per_unit.powi(2)));
         let cells = parts.as_ref().unwrap_or(scene);
         let keys = keys(cells, names, options);
-        let pieces = split_at_contacts(cells, frame, &Regions::default());
+        let pieces = split_at_contacts(cells, frame, &Regions::default(), 0.0);
 
         // Rows in the order of their first surfaces, the back after the front.
         let mut numbers: FxHashMap<(Key, bool), u32> = FxHashMap::default();

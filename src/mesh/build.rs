@@ -26,7 +26,7 @@ impl Mesh {
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
         let frame = scene.frame();
         let regions = contact::regions(scene, &frame);
-        let pieces = contact::pieces(scene, &frame, &regions);
+        let pieces = contact::pieces(scene, &frame, &regions, limits.min_size * frame.extent());
         drop(regions);
         let mut mesh = Self {
             unsplit_contacts: pieces.unsplit,

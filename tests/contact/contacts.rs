@@ -1,23 +1,14 @@
 //! Boxes, beams, partitions, legs and spheres.
 
-use super::setup::{Pieces, Polygons, corners, cuboid, floor, pieces, sphere};
+use super::setup::{Pieces, Polygons, corners, cuboid, floor, footprint, pieces, sphere};
 use glam::{DQuat, DVec3};
 use radiosity::scene::{Scene, Sides};
 
-/// The sides of a box's footprint.
-fn footprint(low: DVec3, high: DVec3) -> [[DVec3; 2]; 4] {
-    let at = [
-        (low.x, low.z),
-        (high.x, low.z),
-        (high.x, high.z),
-        (low.x, high.z),
-    ]
-    .map(|(x, z)| DVec3::new(x, 0.0, z));
-    [0, 1, 2, 3].map(|i| [at[i], at[(i + 1) % 4]])
-}
+/// The footprint of a box of this size around the origin.
+const UNIT: [DVec3; 2] = [DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)];
 
 fn assert_footprint(pieces: &Pieces, scene: &Scene) {
-    for side in footprint(DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)) {
+    for side in footprint(UNIT) {
         pieces.assert_split_along(scene, 0, side, 1e-4);
     }
 }
@@ -164,7 +155,7 @@ fn sheets_in_one_plane_are_split_along_the_rim_of_their_overlap_only() {
     let turn = DQuat::from_rotation_y(0.3);
     let scene = floor(4.0).and(&carpet, turn, DVec3::ZERO).scene(false);
     let found = pieces(&scene);
-    for side in footprint(DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)) {
+    for side in footprint(UNIT) {
         found.assert_split_along(&scene, 0, side.map(|p| turn * p), 1e-4);
     }
     let welded = floor(4.0).and(&carpet, turn, DVec3::ZERO).scene(true);

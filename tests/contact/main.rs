@@ -1,6 +1,7 @@
-//! Surfaces are split along the lines in which others cross or touch them, and nowhere else.
+//! Surfaces are split along the lines in which others cross or touch them, or end close in front of them, and nowhere else.
 
 mod contacts;
+mod gaps;
 mod leaks;
 mod none;
 mod random;

@@ -148,14 +148,31 @@ pub struct Pieces {
     pub of: Vec<Vec<Vec<DVec3>>>,
 }
 
+/// The sides of a rectangle on the floor.
+pub fn footprint([low, high]: [DVec3; 2]) -> [[DVec3; 2]; 4] {
+    let at = [
+        (low.x, low.z),
+        (high.x, low.z),
+        (high.x, high.z),
+        (low.x, high.z),
+    ]
+    .map(|(x, z)| DVec3::new(x, 0.0, z));
+    [0, 1, 2, 3].map(|i| [at[i], at[(i + 1) % 4]])
+}
+
 /// Meshes a scene and checks what holds for every mesh.
 pub fn pieces(scene: &Scene) -> Pieces {
+    pieces_down_to(scene, 0.1)
+}
+
+/// That with elements no smaller than a fraction of the scene.
+pub fn pieces_down_to(scene: &Scene, min_size: f64) -> Pieces {
     let mesh = Mesh::new(
         scene,
         MeshLimits {
             initial_size: 10.0,
             max_depth: 4,
-            min_size: 0.1,
+            min_size,
         },
     );
     let mut of = vec![Vec::new(); scene.surfaces.len()];

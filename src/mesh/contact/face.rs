@@ -132,6 +132,12 @@ impl Face {
         self.normal.dot(point - self.centre)
     }
 
+    /// The cosine of the angle between its normal and that of a polygon.
+    pub fn facing(&self, corners: &[DVec3]) -> f64 {
+        let vector_area = polygon::vector_area(corners);
+        self.normal.dot(vector_area.normalize_or_zero())
+    }
+
     /// Coordinates of a point's foot in the plane.
     pub fn flatten(&self, point: DVec3) -> DVec2 {
         let to = point - self.centre;

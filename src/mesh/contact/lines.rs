@@ -114,7 +114,7 @@ fn rim(face: &Face, vertices: &[u32], positions: &[DVec3]) -> impl Iterator<Item
 }
 
 /// What a segment has inside a face.
-fn inside(face: &Face, line: Line) -> Option<Line> {
+pub(super) fn inside(face: &Face, line: Line) -> Option<Line> {
     let line = face.clip(line)?;
     let short = line[0].distance(line[1]) <= face.reach;
     (!short && !face.beside(&line)).then_some(line)

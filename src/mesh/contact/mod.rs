@@ -8,16 +8,18 @@
 //! 0. [`regions`]: which triangles are one surface; [`border`]: where that ends.
 //! 1. [`near`]: a spatial index tells which surfaces come near one another.
 //! 2. [`lines`]: where they meet the inside of a surface, as segments in its plane.
-//! 3. [`arrange`]: the segments, snapped and split until they meet in common ends only; [`straighten`] joins those that
+//! 3. [`gaps`]: where they end so close in front of it that to elements it is the same.
+//! 4. [`arrange`]: the segments, snapped and split until they meet in common ends only; [`straighten`] joins those that
 //!    continue one another.
-//! 4. [`tile`]: a constrained Delaunay triangulation along them; [`quads`] joins triangles where nothing separates them,
+//! 5. [`tile`]: a constrained Delaunay triangulation along them; [`quads`] joins triangles where nothing separates them,
 //!    and [`grade`] adds points where needles remain.
 //!
-//! Everything happens in the frame, in double precision, with one tolerance, [`REACH`].
+//! Everything happens in the frame, in double precision, with one tolerance, [`REACH`], but for gaps.
 
 mod arrange;
 mod border;
 mod face;
+mod gaps;
 mod grade;
 mod lines;
 mod near;
@@ -29,9 +31,10 @@ mod straighten;
 mod tile;
 
 use crate::geometry::{Frame, polygon};
-use crate::scene::Scene;
+use crate::scene::{Corners, Scene, Sides};
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
+use gaps::Gaps;
 use glam::DVec3;
 use grade::{Grading, grade};
 use lines::Line;
@@ -112,10 +115,11 @@ pub fn regions(scene: &Scene, frame: &Frame) -> Regions {
     Regions::of_triangles(&scene.surfaces, &positions, REACH * frame.extent())
 }
 
-/// Splits the surfaces of a scene along their lines of contact, those of a region as one; the pieces' corners are in the frame.
-pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions) -> Pieces {
+/// Splits the surfaces of a scene along their lines of contact, those of a region as one; the pieces' corners are in the frame. Also along
+/// the rims of gaps that are thin against elements of the length `smallest`, in the unit of the frame; 0 for none.
+pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions, smallest: f64) -> Pieces {
     let shapes = Shapes::new(scene, frame);
-    let splitter = Splitter::new(&shapes, frame, regions);
+    let splitter = Splitter::new(&shapes, frame, regions, Gaps::of(smallest));
     let count = scene.surfaces.len() as u32;
     let mut pieces = Pieces::default();
     pieces.list.reserve(count as usize);
@@ -153,16 +157,18 @@ struct Splitter<'a> {
     regions: &'a Regions,
     neighbours: Neighbours,
     reach: f64,
+    gaps: Gaps,
     grading: Grading,
 }
 
 impl<'a> Splitter<'a> {
-    fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions) -> Self {
+    fn new(shapes: &'a Shapes, frame: &Frame, regions: &'a Regions, gaps: Gaps) -> Self {
         Self {
             shapes,
             regions,
             neighbours: Neighbours::new(shapes.surfaces, &shapes.positions),
             reach: REACH * frame.extent(),
+            gaps,
             grading: Grading::of(shapes.surfaces.len(), frame),
         }
     }
@@ -171,12 +177,16 @@ impl<'a> Splitter<'a> {
     fn alone(&self, surface: u32) -> Option<(u32, Option<Vec<Piece>>)> {
         let face = Face::new(&self.shapes.corners(surface), self.reach)?;
         let lines = self.lines(&face, surface);
-        if lines.is_empty() {
+        let sides: Vec<Line> = (0..face.flat().len()).map(|i| face.side(i)).collect();
+        let rims = self.rims(&face, surface, &[&sides[..], &lines].concat());
+        if lines.is_empty() && rims.is_empty() {
             return None;
         }
         let outline = self.shapes.outline(surface);
-        let pieces = split(&face, surface, &lines, outline, self.grading);
-        Some((surface, pieces))
+        Some((
+            surface,
+            self.split(&face, surface, [&lines, &rims], outline),
+        ))
     }
 
     /// The pieces of a region, by its first surface; those of each of its members if it cannot be tiled.
@@ -200,27 +210,52 @@ impl<'a> Splitter<'a> {
         let face = Face::around(&sides, areas.sum(), self.reach)?;
         let around = face.border.as_ref()?;
         let met = self.lines(&face, members[0]);
+        let lines = [&around.lines[..], &met].concat();
+        let rims = self.rims(&face, members[0], &lines);
         // Most regions are two halves of a quad that others meet on its border only.
         let free = |line: &Line| around.runs_along(*line, self.reach);
         if let Some(corners) = regions::quad(&border)
+            && rims.is_empty()
             && met.iter().all(free)
             && flatness(corners.map(|v| face.flatten(at(v)))) >= FAIR
         {
             return Some(vec![Piece::new(members[0], &corners.map(at), [true; 4])]);
         }
-        let lines: Vec<Line> = around.lines.iter().copied().chain(met).collect();
-        split(&face, members[0], &lines, [true; 4], self.grading)
+        self.split(&face, members[0], [&lines, &rims], [true; 4])
     }
 
     /// Where surfaces of other regions meet a face.
     fn lines(&self, face: &Face, first: u32) -> Vec<Line> {
-        let near = self
-            .neighbours
-            .of(face.corners(), self.reach + face.thickness);
-        let others = near
-            .filter(|other| self.regions.first(*other) != first)
-            .map(|other| self.shapes.surfaces[other as usize].corners);
+        let others = self.others(face, first, self.reach + face.thickness);
         lines::lines(face, others, &self.shapes.positions)
+    }
+
+    /// Where surfaces of other regions end close in front of a face, away from lines on it.
+    fn rims(&self, face: &Face, first: u32, lines: &[Line]) -> Vec<Line> {
+        let both_sides = self.shapes.surfaces[first as usize].sides == Sides::Both;
+        let near = |margin| self.others(face, first, margin);
+        self.gaps
+            .rims(face, both_sides, lines, near, &self.shapes.positions)
+    }
+
+    /// The surfaces of other regions closer than `margin` to the box around a face.
+    fn others(&self, face: &Face, first: u32, margin: f64) -> impl Iterator<Item = Corners> {
+        let near = self.neighbours.of(face.corners(), margin);
+        near.filter(move |other| self.regions.first(*other) != first)
+            .map(|other| self.shapes.surfaces[other as usize].corners)
+    }
+
+    /// Splits a face along lines, and along rims too where that can be done; `None` if neither can.
+    fn split(
+        &self,
+        face: &Face,
+        surface: u32,
+        [lines, rims]: [&[Line]; 2],
+        outline: [bool; 4],
+    ) -> Option<Vec<Piece>> {
+        let along = |lines: &[Line]| split(face, surface, lines, outline, self.grading);
+        let all = (!rims.is_empty()).then(|| [lines, rims].concat());
+        all.and_then(|all| along(&all)).or_else(|| along(lines))
     }
 }
 

@@ -1,0 +1,206 @@
+//! Rims: where another surface ends close in front of a face without touching it.
+//!
+//! Behind a baseboard that stands a millimetre off a wall it is dark, and the light ends within millimetres of the rim. For elements of
+//! centimetres that is a step, as it is below a box that touches; one across it is bright or dark beyond the rim, and a row of them has
+//! teeth. So the face is cut along the rim, seen square to the face. What rays meet stays as it is: light enters the gap as before.
+//!
+//! Only rims count, not all that is near: where a surface goes on beyond its side, as from one triangle of a sheet or of a cushion to the
+//! next, the gap goes on too. Cut along gaps up to a fraction of the least size of elements, meshes had these errors (nRMS, path-traced
+//! references; of the interior the mean of three first sizes, which differ by 0.3 %):
+//!
+//! | fraction | none | 1/8 | 1/4 | 1/2 |
+//! |---|---|---|---|---|
+//! | Geometry, standard | 0.73 | 1.35 | 0.66 | 1.51 |
+//! | Geometry, accurate | 0.22 | 0.60 | 0.17 | 0.18 |
+//! | interior with gaps of 0.9 mm in 29 m, standard | 2.95 | 2.72 | 2.52 | 2.52 |
+//!
+//! Where Geometry is worse, that is on undersides a little higher than what is cut. With a quarter it has a quarter fewer vertices, the
+//! interior as many.
+
+use super::face::Face;
+use super::lines::{Line, inside};
+use crate::geometry::polygon;
+use crate::scene::Corners;
+use glam::{DVec2, DVec3};
+
+/// The highest gap, in lengths of the smallest elements: of the light at its rim a twentieth is left after two heights, in half of such
+/// an element.
+const HIGHEST: f64 = 0.25;
+
+/// A face with more rims than this in front is not cut along them: bending them takes time with their square.
+const MOST_RIMS: usize = 1000;
+
+/// The cosine of the steepest slope against a face of what lies in front of it; what is steeper stands on it.
+const LYING: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Which gaps are thin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gaps {
+    /// How high they are at most, in the frame.
+    height: f64,
+    /// The length of the smallest elements.
+    smallest: f64,
+}
+
+/// A side of a surface by the bits of its ends, in order: files repeat a vertex where normals differ.
+type Key = [[u64; 3]; 2];
+
+/// A side of a surface in front of a face.
+struct Side {
+    key: Key,
+    /// Whether the surface is on its left from the first end to the second, seen from the front of the face.
+    left: bool,
+    /// Whether the surface lies in front of the face, rather than stand on it.
+    lies: bool,
+    rim: Rim,
+}
+
+/// What may be a rim: the height of its upper end, and its foot.
+type Rim = (f64, Line);
+
+impl Gaps {
+    /// Those that are thin against elements of this length, in the frame; none if it is 0.
+    pub fn of(smallest: f64) -> Self {
+        Self {
+            height: HIGHEST * smallest,
+            smallest,
+        }
+    }
+
+    /// The rims in front of a face, or on both of its sides, as segments in its plane that keep away from `lines`, those of contact and
+    /// on the border. `near` gives the surfaces closer than a distance.
+    pub fn rims<I: Iterator<Item = Corners>>(
+        &self,
+        face: &Face,
+        both_sides: bool,
+        lines: &[Line],
+        near: impl FnOnce(f64) -> I,
+        positions: &[DVec3],
+    ) -> Vec<Line> {
+        // What is hardly larger than the smallest elements is not worth a cut, and there may be a million of those.
+        let is_large = polygon::diameter(face.corners()) > 2.0 * self.smallest;
+        if !is_large || self.height <= face.thickness {
+            return Vec::new();
+        }
+        let lowest = if both_sides { -self.height } else { 0.0 };
+        let mut sides: Vec<Side> = near(self.height)
+            .flat_map(|other| self.sides(face, lowest, other, positions))
+            .collect();
+        sides.sort_by_key(|side| side.key);
+        // One that two lying surfaces have in common, on either side of it, is no rim.
+        let ends = |of: &&[Side]| {
+            let stands = of.iter().any(|side| !side.lies);
+            stands || of.iter().all(|side| side.left == of[0].left)
+        };
+        let rims = sides.chunk_by(|a, b| a.key == b.key).filter(ends);
+        let on_face = |(height, line)| Some((height, inside(face, line)?));
+        let mut rims: Vec<Rim> = rims.filter_map(|of| on_face(of[0].rim)).collect();
+        if rims.len() > MOST_RIMS {
+            return Vec::new();
+        }
+        // Of rims above one another the lowest is sharpest.
+        rims.sort_by(|x, y| x.0.total_cmp(&y.0));
+        bent(&rims, lines)
+    }
+
+    /// The sides that a surface has in the gap, between the heights `lowest` and that of the gap.
+    fn sides(&self, face: &Face, lowest: f64, other: Corners, positions: &[DVec3]) -> Vec<Side> {
+        let indices = other.indices().iter();
+        let corners: Vec<DVec3> = indices.map(|v| positions[*v as usize]).collect();
+        let feet: Vec<DVec2> = corners.iter().map(|corner| face.flatten(*corner)).collect();
+        if face.beside(&feet) {
+            return Vec::new();
+        }
+        let facing = face.facing(&corners);
+        let side = |i: usize| {
+            let ends = [corners[i], corners[(i + 1) % corners.len()]];
+            // No zero but the positive one: both are the same place.
+            let [a, b] = ends.map(|end| (end + 0.0).to_array().map(f64::to_bits));
+            let turned = b < a;
+            let (key, ends) = match turned {
+                true => ([b, a], [ends[1], ends[0]]),
+                false => ([a, b], ends),
+            };
+            Some(Side {
+                key,
+                left: turned != (facing > 0.0),
+                lies: facing.abs() > LYING,
+                rim: self.within(face, lowest, ends)?,
+            })
+        };
+        (0..corners.len()).filter_map(side).collect()
+    }
+
+    /// The foot of what of a side is in the gap; of one that rises from it, only if that is as long as an element. One that touches the
+    /// face is a line of contact already.
+    fn within(&self, face: &Face, lowest: f64, ends: [DVec3; 2]) -> Option<Rim> {
+        let heights = ends.map(|end| face.height(end));
+        let (low, high) = (heights[0].min(heights[1]), heights[0].max(heights[1]));
+        let touches = low >= -face.thickness && high <= face.thickness;
+        if touches || high < lowest || low > self.height {
+            return None;
+        }
+        let [a, b] = ends.map(|end| face.flatten(end));
+        if low >= lowest && high <= self.height {
+            return Some((high.max(-low), [a, b]));
+        }
+        let foot = |height: f64| {
+            let within = height.clamp(lowest, self.height);
+            a.lerp(b, (within - heights[0]) / (heights[1] - heights[0]))
+        };
+        let part = heights.map(foot);
+        (part[0].distance(part[1]) > self.smallest).then_some((self.height, part))
+    }
+}
+
+/// What is between a rim and a line beside it that is nearer than the gap is high would be a row of needles, and the light at the rim is
+/// no sharper. So rims are bent onto lines, and onto lower rims; the lines stay as they are.
+fn bent(rims: &[Rim], lines: &[Line]) -> Vec<Line> {
+    let mut all = lines.to_vec();
+    for (height, rim) in rims {
+        let is_near = |a: DVec2, b: DVec2| a.distance(b) <= *height;
+        for part in chain(*rim, &all, is_near).windows(2) {
+            let [a, b] = [part[0], part[1]];
+            let on_others = |place: &f64| {
+                let at = a.lerp(b, *place);
+                all.iter().any(|line| is_near(nearest_on(*line, at), at))
+            };
+            if !is_near(a, b) && ![0.25, 0.5, 0.75].iter().all(on_others) {
+                all.push([a, b]);
+            }
+        }
+    }
+    all.split_off(lines.len())
+}
+
+/// A rim by way of the ends of the lines that it passes.
+fn chain(rim: Line, lines: &[Line], is_near: impl Fn(DVec2, DVec2) -> bool) -> Vec<DVec2> {
+    let [a, b] = rim.map(|end| snapped(end, lines, &is_near));
+    let along = (b - a) / (b - a).length_squared();
+    let passed = lines.iter().flatten().filter_map(|end| {
+        let place = (*end - a).dot(along);
+        let passes = place > 0.0 && place < 1.0 && is_near(a.lerp(b, place), *end);
+        passes.then_some((place, *end))
+    });
+    let mut chain: Vec<(f64, DVec2)> = passed.chain([(0.0, a), (1.0, b)]).collect();
+    chain.sort_by(|x, y| x.0.total_cmp(&y.0));
+    chain.into_iter().map(|(_, at)| at).collect()
+}
+
+/// A point, moved to the nearest end of a line if one is near, else to the nearest point of one.
+fn snapped(point: DVec2, lines: &[Line], is_near: impl Fn(DVec2, DVec2) -> bool) -> DVec2 {
+    let nearest = |of: &mut dyn Iterator<Item = DVec2>| {
+        let near = of.filter(|at| is_near(*at, point));
+        near.min_by(|x, y| x.distance(point).total_cmp(&y.distance(point)))
+    };
+    nearest(&mut lines.iter().flatten().copied())
+        .or_else(|| nearest(&mut lines.iter().map(|line| nearest_on(*line, point))))
+        .unwrap_or(point)
+}
+
+/// The point of a segment that is nearest to another.
+fn nearest_on([a, b]: Line, point: DVec2) -> DVec2 {
+    let along = b - a;
+    let place = (point - a).dot(along) / along.length_squared();
+    a.lerp(b, place.clamp(0.0, 1.0))
+}
