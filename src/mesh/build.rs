@@ -45,6 +45,7 @@ impl Mesh {
             let mut corners = piece.corners().to_vec();
             let mut front = Patch::new(piece.surface, surface.polygon, &corners, false);
             front.outline = piece.outline;
+            let first = mesh.patches.len() as u32;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
             mesh.add_patch(front, shortest, &mut known);
@@ -54,6 +55,11 @@ impl Mesh {
                 back.outline = reversed(piece.outline, corners.len());
                 back.reflectance = material.reflectance;
                 mesh.add_patch(back, shortest, &mut known);
+            }
+            if piece.clearance > 0.0 {
+                let sides = first..mesh.patches.len() as u32;
+                mesh.clearances
+                    .extend(sides.map(|side| (side, piece.clearance)));
             }
         }
         drop(known);
@@ -80,6 +86,7 @@ impl Mesh {
             later: FxHashMap::default(),
             at: FxHashMap::default(),
             limits,
+            clearances: FxHashMap::default(),
             unsplit_contacts: 0,
         }
     }

@@ -78,6 +78,8 @@ pub struct Mesh {
     /// The vertices of patches that have more than [`FEW`], by place.
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
+    /// How far from the border of patches beside thin gaps light is evaluated, at least; in the frame.
+    clearances: FxHashMap<u32, f32>,
     /// Surfaces that could not be split along the lines in which others meet them: light may leak there.
     pub unsplit_contacts: usize,
 }
@@ -211,6 +213,14 @@ impl Mesh {
         } else {
             position
         }
+    }
+
+    /// How far from their border light is evaluated on patches beside thin gaps, at least; in the frame, in the order of the patches.
+    pub fn clearances(&self) -> Vec<(u32, f32)> {
+        let of = self.clearances.iter();
+        let mut clearances: Vec<_> = of.map(|(patch, clearance)| (*patch, *clearance)).collect();
+        clearances.sort_by_key(|(patch, _)| *patch);
+        clearances
     }
 
     /// The deepest level of any element.

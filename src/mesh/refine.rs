@@ -10,7 +10,7 @@ use rayon::prelude::*;
 const INWARDS: f64 = 1e-3;
 
 /// … or more, so that it is this fraction of the scene's extent away from a wall that stands on the border: rays are not tested on
-/// the first hundred-thousandth of their way, and would pass through the wall …
+/// the first hundred-thousandth of their way, and would pass through the wall; beside a thin gap, so that it is further away from the rim …
 const CLEARANCE: f64 = 2.0 * SURFACE_OFFSET;
 
 /// … but never more than this fraction.
@@ -127,8 +127,9 @@ impl Mesh {
             (b - a).normalize_or_zero().cross(centre - a).length()
         };
         let nearest = (0..count).map(depth).fold(f64::INFINITY, f64::min);
-        let clear = CLEARANCE * self.frame.extent() / nearest;
-        position.lerp(centre, clear.clamp(INWARDS, MOST_INWARDS))
+        let beside_gap = self.clearances.get(&of.patch).copied().unwrap_or(0.0);
+        let clear = f64::from(beside_gap).max(CLEARANCE * self.frame.extent());
+        position.lerp(centre, (clear / nearest).clamp(INWARDS, MOST_INWARDS))
     }
 
     /// The positions of the corners of an element of a patch, and how many there are.

@@ -75,8 +75,12 @@ impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
 }
 
 impl StoredMesh {
-    /// The mesh, if what it says is sound, with what is not stored. Errors say what does not fit.
-    pub fn restored(self) -> Result<Mesh, String> {
+    /// The mesh with these [`Mesh::clearances`], if what it says is sound, with what is not stored. Errors say what does not fit.
+    pub fn restored(self, clearances: &[(u32, f32)]) -> Result<Mesh, String> {
+        let is_sound = |(patch, clearance): &(u32, f32)| {
+            (*patch as usize) < self.patches.len() && clearance.is_finite() && *clearance > 0.0
+        };
+        check(clearances.iter().all(is_sound), "a clearance")?;
         let (mut patches, mut known) = (Patches::default(), Known::default());
         let mut later = FxHashMap::default();
         for (number, of) in (0..).zip(self.patches) {
@@ -100,6 +104,7 @@ impl StoredMesh {
             vertices: self.vertices.into_iter().map(vertex).collect(),
             buried: self.buried,
             later,
+            clearances: clearances.iter().copied().collect(),
             ..Mesh::empty(self.frame, self.limits)
         };
         mesh.restore()?;

@@ -1,8 +1,8 @@
 //! The solution file: everything a later command needs, with a version and a checksum.
 //!
 //! Layout: 8 bytes of magic, version (u32), length of the payload (u64), CRC-32 of the payload (u32), all little endian, then
-//! the payload in the postcard format: [`Stored`]. The report, which grows with the program, is JSON in it. Files of version 1 are
-//! still read (`format_1`).
+//! the payload in the postcard format: [`Stored`]. The report, which grows with the program, is JSON in it. Files of version 2, which end
+//! before the clearances, and of version 1 (`format_1`) are still read.
 
 use super::{Continuation, Report, Solution, format_1};
 use crate::mesh::StoredMesh;
@@ -15,8 +15,11 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"RADIOSOL";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 24;
+
+/// An empty list in the postcard format.
+const NO_CLEARANCES: [u8; 1] = [0];
 
 /// Bytes of the payload that are written at a time.
 const MANY: usize = 1 << 16;
@@ -51,6 +54,7 @@ struct Stored<'a, M> {
     mesh: M,
     light: Cow<'a, Light>,
     continuation: Cow<'a, Option<Continuation>>,
+    clearances: Vec<(u32, f32)>,
 }
 
 /// The payload on its way out, with what the header says of it. Keeps the reason when writing fails: the encoder only says that it could
@@ -105,6 +109,7 @@ impl Solution {
             mesh: &self.mesh,
             light: Cow::Borrowed(&self.light),
             continuation: Cow::Borrowed(&self.continuation),
+            clearances: self.mesh.clearances(),
         };
         let mut payload = Payload {
             out,
@@ -164,10 +169,10 @@ impl Solution {
         if crc32fast::hash(payload) != checksum {
             return Err("the checksum does not match: the file is damaged".into());
         }
-        if version == 1 {
-            format_1::decode(payload)?.checked()
-        } else {
-            Self::from_payload(payload)
+        match version {
+            1 => format_1::decode(payload)?.checked(),
+            2 => Self::from_payload(&[payload, &NO_CLEARANCES].concat()),
+            _ => Self::from_payload(payload),
         }
     }
 
@@ -179,7 +184,7 @@ impl Solution {
             report,
             cameras: stored.cameras.into_owned(),
             metres_per_unit: stored.metres_per_unit,
-            mesh: stored.mesh.restored()?,
+            mesh: stored.mesh.restored(&stored.clearances)?,
             light: stored.light.into_owned(),
             continuation: stored.continuation.into_owned(),
         };

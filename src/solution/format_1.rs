@@ -104,7 +104,7 @@ struct OptionsThen {
 /// Decodes the payload; the parts are not held against each other yet.
 pub(super) fn decode(payload: &[u8]) -> Result<Solution, String> {
     let then: SolutionThen = postcard::from_bytes(payload).map_err(undecodable)?;
-    let mesh = then.mesh.restored()?;
+    let mesh = then.mesh.restored(&[])?;
     let exitance = |(unshot, patch): (&bool, crate::mesh::Patch)| {
         if *unshot {
             patch.exitance

@@ -191,22 +191,46 @@ fn lit(gap: f64, turn: DQuat) -> Solution {
 }
 
 #[test]
-fn a_floor_just_outside_of_a_hovering_box_is_as_bright_as_beside_one_that_stands() {
+fn beside_a_hovering_box_it_is_as_bright_as_beside_one_that_stands() {
     for turn in [0.0, 0.4].map(DQuat::from_rotation_y) {
         let [standing, hovering] = [0.0, 4e-4].map(|gap| lit(gap, turn));
         let [standing, hovering] = [&standing, &hovering].map(Prober::new);
-        let mut worst: f64 = 0.0;
-        for step in 0..41 {
-            // Along the side that the light reaches, a millimetre from the box.
-            let along = f64::from(step) / 42.0 - 0.476;
-            let at = turn * DVec3::new(along, 0.0, 0.501);
+        let off = |at: DVec3, normal: DVec3| {
             let [there, here] = [&standing, &hovering].map(|prober| {
-                let probe = prober.probe(at, DVec3::Y);
-                f64::from(probe.expect("the floor is there").irradiance.x)
+                let probe = prober.probe(turn * at, turn * normal);
+                f64::from(probe.expect("on a surface").irradiance.x)
             });
-            worst = worst.max((here / there - 1.0).abs());
-        }
+            (here / there - 1.0).abs()
+        };
+        // Along the side that the light reaches: on the floor, a millimetre from the box, and on the box, three from its edge.
+        let places = (0..41).map(|step| f64::from(step) / 42.0 - 0.476);
+        let floor = places
+            .clone()
+            .map(|x| off(DVec3::new(x, 0.0, 0.501), DVec3::Y));
+        let side = places.map(|x| off(DVec3::new(x, 0.003, 0.5), DVec3::Z));
+        let worst = floor.chain(side).fold(0.0, f64::max);
         // What light there is enters the gap instead of meeting the box, less than a hundredth; the rest is that of two draft meshes.
         assert!(worst < 0.1, "{worst}");
     }
+}
+
+#[test]
+fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
+    let gap = 4e-4;
+    let scene = floor(4.0)
+        .and(&cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::Y * (0.5 + gap))
+        .scene(true);
+    let mesh = pieces_down_to(&scene, SMALLEST).mesh;
+    let on_floor = (0..mesh.vertices.len() as u32)
+        .filter(|v| mesh.patch(mesh.vertices[*v as usize].patch).surface == 0);
+    let mut beside = 0;
+    for vertex in on_floor {
+        let [at, from] = [mesh.position(vertex), mesh.point(vertex)].map(|p| mesh.frame.leave(p));
+        let from_rim = |p: DVec3| (p.x.abs().max(p.z.abs()) - 0.5).abs();
+        if from_rim(at) < 1e-5 {
+            beside += 1;
+            assert!(from_rim(from) >= 1.9 * gap, "{from} for {at}");
+        }
+    }
+    assert!(beside >= 8, "{beside}");
 }

@@ -10,7 +10,7 @@ use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
 use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
 use radiosity::visibility::EngineChoice;
-use radiosity::{Run, Settings, SolveError};
+use radiosity::{Run, Settings, SolveError, solve};
 
 /// Bytes of a solution file before its payload.
 const HEADER: usize = 24;
@@ -257,6 +257,27 @@ fn a_file_of_the_first_format_is_shown_but_not_continued() {
     assert!(matches!(error, Some(SolveError::NotKept)));
 }
 
+/// Such a file is one of today without the list that it ends with.
+#[test]
+fn a_file_of_the_second_format_is_continued() {
+    let how = settings(draft(), EngineChoice::Obvhs, 1);
+    let scene = bundled("emission");
+    let mut run = Run::new(scene.clone(), how.clone()).expect("can be solved");
+    run.go(&mut Batches(3)).expect("can be solved");
+    let mut old = file(&run.finish());
+    assert_eq!(old.pop(), Some(0), "no surface is beside a gap");
+    let payload = &old[HEADER..];
+    let (length, checksum) = (payload.len() as u64, crc32fast::hash(payload));
+    old[8..12].copy_from_slice(&2u32.to_le_bytes());
+    old[12..20].copy_from_slice(&length.to_le_bytes());
+    old[20..24].copy_from_slice(&checksum.to_le_bytes());
+    let solution = Solution::decode(&old).expect("is still read");
+    let mut run = Run::resume(solution, how.clone()).expect("can be resumed");
+    run.go(&mut Silent).expect("can be solved");
+    let whole = solve(&scene, &how, &mut Silent).expect("can be solved");
+    assert_eq!(run.finish().light.irradiance, whole.light.irradiance);
+}
+
 /// A checksum that holds does not make the contents sound: whatever is wrong with them is found before they are used.
 #[test]
 fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
@@ -327,6 +348,16 @@ fn a_file_whose_mesh_is_not_sound_is_refused() {
     let known = encoded(element);
     element.corners[0] = 1 << 30;
     refused(known, encoded(element), "a corner");
+    let clearances = whole.mesh.clearances();
+    let first = |patch, clearance| {
+        let mut clearances = clearances.clone();
+        clearances[0] = (patch, clearance);
+        encoded(clearances)
+    };
+    let (patch, clearance) = clearances[0];
+    let known = first(patch, clearance);
+    refused(known.clone(), first(1 << 20, clearance), "a clearance");
+    refused(known, first(patch, -clearance), "a clearance");
 }
 
 fn encoded(of: impl serde::Serialize) -> Vec<u8> {

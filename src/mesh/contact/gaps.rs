@@ -3,6 +3,7 @@
 //! Behind a baseboard that stands a millimetre off a wall it is dark, and the light ends within millimetres of the rim. For elements of
 //! centimetres that is a step, as it is below a box that touches; one across it is bright or dark beyond the rim, and a row of them has
 //! teeth. So the face is cut along the rim, seen square to the face. What rays meet stays as it is: light enters the gap as before.
+//! That light is not for the elements beside the rim, which have vertices on it: there these look from where the gap is no more to be seen.
 //!
 //! Only rims count, not all that is near: where a surface goes on beyond its side, as from one triangle of a sheet or of a cushion to the
 //! next, the gap goes on too. Cut along gaps up to a fraction of the least size of elements, meshes had these errors (nRMS, path-traced
@@ -26,6 +27,9 @@ use glam::{DVec2, DVec3};
 /// The highest gap, in lengths of the smallest elements: of the light at its rim a twentieth is left after two heights, in half of such
 /// an element.
 const HIGHEST: f64 = 0.25;
+
+/// Vertices beside a rim are evaluated this many heights of the gap away from it.
+const CLEARANCE: f64 = 2.0;
 
 /// A face with more rims than this in front is not cut along them: bending them takes time with their square.
 const MOST_RIMS: usize = 1000;
@@ -55,8 +59,24 @@ struct Side {
     rim: Rim,
 }
 
-/// What may be a rim: the height of its upper end, and its foot.
-type Rim = (f64, Line);
+/// What is a rim, or may be one.
+#[derive(Clone, Copy)]
+pub(super) struct Rim {
+    /// That of its upper end.
+    height: f64,
+    /// In the plane of the face.
+    pub foot: Line,
+}
+
+/// How far from the border of a piece of a face light is evaluated, if rims are beside it.
+pub(super) fn clearance(rims: &[Rim], corners: &[DVec2]) -> f64 {
+    let beside = |rim: &&Rim| {
+        let is_near = |at: &DVec2| nearest_on(rim.foot, *at).distance(*at) <= rim.height;
+        corners.iter().any(is_near)
+    };
+    let heights = rims.iter().filter(beside).map(|rim| rim.height);
+    CLEARANCE * heights.fold(0.0, f64::max)
+}
 
 impl Gaps {
     /// Those that are thin against elements of this length, in the frame; none if it is 0.
@@ -67,7 +87,7 @@ impl Gaps {
         }
     }
 
-    /// The rims in front of a face, or on both of its sides, as segments in its plane that keep away from `lines`, those of contact and
+    /// The rims in front of a face, or on both of its sides, with feet that keep away from `lines`, those of contact and
     /// on the border. `near` gives the surfaces closer than a distance.
     pub fn rims<I: Iterator<Item = Corners>>(
         &self,
@@ -76,7 +96,7 @@ impl Gaps {
         lines: &[Line],
         near: impl FnOnce(f64) -> I,
         positions: &[DVec3],
-    ) -> Vec<Line> {
+    ) -> Vec<Rim> {
         // What is hardly larger than the smallest elements is not worth a cut, and there may be a million of those.
         let is_large = polygon::diameter(face.corners()) > 2.0 * self.smallest;
         if !is_large || self.height <= face.thickness {
@@ -93,13 +113,16 @@ impl Gaps {
             stands || of.iter().all(|side| side.left == of[0].left)
         };
         let rims = sides.chunk_by(|a, b| a.key == b.key).filter(ends);
-        let on_face = |(height, line)| Some((height, inside(face, line)?));
+        let on_face = |rim: Rim| {
+            let foot = inside(face, rim.foot)?;
+            Some(Rim { foot, ..rim })
+        };
         let mut rims: Vec<Rim> = rims.filter_map(|of| on_face(of[0].rim)).collect();
         if rims.len() > MOST_RIMS {
             return Vec::new();
         }
         // Of rims above one another the lowest is sharpest.
-        rims.sort_by(|x, y| x.0.total_cmp(&y.0));
+        rims.sort_by(|x, y| x.height.total_cmp(&y.height));
         bent(&rims, lines)
     }
 
@@ -142,35 +165,42 @@ impl Gaps {
         }
         let [a, b] = ends.map(|end| face.flatten(end));
         if low >= lowest && high <= self.height {
-            return Some((high.max(-low), [a, b]));
+            return Some(Rim {
+                height: high.max(-low),
+                foot: [a, b],
+            });
         }
         let foot = |height: f64| {
             let within = height.clamp(lowest, self.height);
             a.lerp(b, (within - heights[0]) / (heights[1] - heights[0]))
         };
-        let part = heights.map(foot);
-        (part[0].distance(part[1]) > self.smallest).then_some((self.height, part))
+        let foot = heights.map(foot);
+        let height = self.height;
+        (foot[0].distance(foot[1]) > self.smallest).then_some(Rim { height, foot })
     }
 }
 
 /// What is between a rim and a line beside it that is nearer than the gap is high would be a row of needles, and the light at the rim is
 /// no sharper. So rims are bent onto lines, and onto lower rims; the lines stay as they are.
-fn bent(rims: &[Rim], lines: &[Line]) -> Vec<Line> {
+fn bent(rims: &[Rim], lines: &[Line]) -> Vec<Rim> {
     let mut all = lines.to_vec();
-    for (height, rim) in rims {
-        let is_near = |a: DVec2, b: DVec2| a.distance(b) <= *height;
-        for part in chain(*rim, &all, is_near).windows(2) {
+    let mut bent = Vec::new();
+    for rim in rims {
+        let is_near = |a: DVec2, b: DVec2| a.distance(b) <= rim.height;
+        for part in chain(rim.foot, &all, is_near).windows(2) {
             let [a, b] = [part[0], part[1]];
             let on_others = |place: &f64| {
                 let at = a.lerp(b, *place);
                 all.iter().any(|line| is_near(nearest_on(*line, at), at))
             };
             if !is_near(a, b) && ![0.25, 0.5, 0.75].iter().all(on_others) {
-                all.push([a, b]);
+                let foot = [a, b];
+                all.push(foot);
+                bent.push(Rim { foot, ..*rim });
             }
         }
     }
-    all.split_off(lines.len())
+    bent
 }
 
 /// A rim by way of the ends of the lines that it passes.

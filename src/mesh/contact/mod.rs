@@ -34,8 +34,8 @@ use crate::geometry::{Frame, polygon};
 use crate::scene::{Corners, Scene, Sides};
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
-use gaps::Gaps;
-use glam::DVec3;
+use gaps::{Gaps, Rim, clearance};
+use glam::{DVec2, DVec3};
 use grade::{Grading, grade};
 use lines::Line;
 use near::Neighbours;
@@ -79,6 +79,8 @@ pub struct Piece {
     count: u8,
     /// Which of its sides lie on the border of the input polygon, rather than on a cut through it.
     pub outline: [bool; 4],
+    /// How far from its border light is to be evaluated, at least; in the frame.
+    pub clearance: f32,
 }
 
 impl Piece {
@@ -91,6 +93,7 @@ impl Piece {
             corners: [corners[0], corners[1], corners[2], fourth],
             count,
             outline,
+            clearance: 0.0,
         }
     }
 
@@ -183,10 +186,8 @@ impl<'a> Splitter<'a> {
             return None;
         }
         let outline = self.shapes.outline(surface);
-        Some((
-            surface,
-            self.split(&face, surface, [&lines, &rims], outline),
-        ))
+        let pieces = self.split(&face, surface, &lines, &rims, outline);
+        Some((surface, pieces))
     }
 
     /// The pieces of a region, by its first surface; those of each of its members if it cannot be tiled.
@@ -221,7 +222,7 @@ impl<'a> Splitter<'a> {
         {
             return Some(vec![Piece::new(members[0], &corners.map(at), [true; 4])]);
         }
-        self.split(&face, members[0], [&lines, &rims], [true; 4])
+        self.split(&face, members[0], &lines, &rims, [true; 4])
     }
 
     /// Where surfaces of other regions meet a face.
@@ -231,7 +232,7 @@ impl<'a> Splitter<'a> {
     }
 
     /// Where surfaces of other regions end close in front of a face, away from lines on it.
-    fn rims(&self, face: &Face, first: u32, lines: &[Line]) -> Vec<Line> {
+    fn rims(&self, face: &Face, first: u32, lines: &[Line]) -> Vec<Rim> {
         let both_sides = self.shapes.surfaces[first as usize].sides == Sides::Both;
         let near = |margin| self.others(face, first, margin);
         self.gaps
@@ -250,12 +251,22 @@ impl<'a> Splitter<'a> {
         &self,
         face: &Face,
         surface: u32,
-        [lines, rims]: [&[Line]; 2],
+        lines: &[Line],
+        rims: &[Rim],
         outline: [bool; 4],
     ) -> Option<Vec<Piece>> {
         let along = |lines: &[Line]| split(face, surface, lines, outline, self.grading);
-        let all = (!rims.is_empty()).then(|| [lines, rims].concat());
-        all.and_then(|all| along(&all)).or_else(|| along(lines))
+        let along_rims = || {
+            let feet = rims.iter().map(|rim| rim.foot);
+            let mut pieces = along(&lines.iter().copied().chain(feet).collect::<Vec<_>>())?;
+            for piece in &mut pieces {
+                let corners = piece.corners().iter().map(|at| face.flatten(*at));
+                piece.clearance = clearance(rims, &corners.collect::<Vec<DVec2>>()) as f32;
+            }
+            Some(pieces)
+        };
+        let pieces = (!rims.is_empty()).then(along_rims).flatten();
+        pieces.or_else(|| along(lines))
     }
 }
 
