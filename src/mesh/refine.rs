@@ -10,11 +10,14 @@ use rayon::prelude::*;
 const INWARDS: f64 = 1e-3;
 
 /// … or more, so that it is this fraction of the scene's extent away from a wall that stands on the border: rays are not tested on
-/// the first hundred-thousandth of their way, and would pass through the wall; beside a thin gap, so that it is further away from the rim …
+/// the first hundred-thousandth of their way, and would pass through the wall …
 const CLEARANCE: f64 = 2.0 * SURFACE_OFFSET;
 
-/// … but never more than this fraction.
+/// … but never more than this fraction …
 const MOST_INWARDS: f64 = 0.15;
+
+/// … or this one, if it is beside a thin gap that it must not look into. Narrow strips lie in such gaps.
+const MOST_BESIDE_GAP: f64 = 0.5;
 
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
@@ -127,9 +130,13 @@ impl Mesh {
             (b - a).normalize_or_zero().cross(centre - a).length()
         };
         let nearest = (0..count).map(depth).fold(f64::INFINITY, f64::min);
-        let beside_gap = self.clearances.get(&of.patch).copied().unwrap_or(0.0);
-        let clear = f64::from(beside_gap).max(CLEARANCE * self.frame.extent());
-        position.lerp(centre, (clear / nearest).clamp(INWARDS, MOST_INWARDS))
+        let from_wall = CLEARANCE * self.frame.extent() / nearest;
+        let from_gap = self
+            .clearances
+            .get(&of.patch)
+            .map_or(0.0, |c| f64::from(*c) / nearest);
+        let clear = from_wall.clamp(INWARDS, MOST_INWARDS);
+        position.lerp(centre, clear.max(from_gap.min(MOST_BESIDE_GAP)))
     }
 
     /// The positions of the corners of an element of a patch, and how many there are.
