@@ -1,4 +1,4 @@
-//! From where, with what field of view, how large and how bright: the flags of `render` and `view`.
+//! From where, which way up, with what field of view, how large and how bright: the flags of `render` and `view`.
 
 use super::CliError;
 use super::values::finite;
@@ -17,6 +17,9 @@ pub(super) struct Viewpoint {
     /// Look at this point instead (scene units)
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     look_at: Option<DVec3>,
+    /// This way is up instead, as (0,0,-1) is on a plan
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    up: Option<DVec3>,
     /// Horizontal field of view, in degrees
     #[arg(long, value_name = "DEGREES")]
     fov: Option<f64>,
@@ -62,6 +65,7 @@ impl Viewpoint {
         let adjusted = Camera {
             eye: self.eye.unwrap_or(camera.eye),
             look_at: self.look_at.unwrap_or(camera.look_at),
+            up: self.up.unwrap_or(camera.up),
             horizontal_fov: self.fov.unwrap_or(camera.horizontal_fov),
             width: self.width.unwrap_or(camera.width),
             height: self.height.unwrap_or(camera.height),
@@ -77,7 +81,8 @@ impl Viewpoint {
         }
         if sight.cross(adjusted.up).length() <= 1e-9 * sight.length() * adjusted.up.length() {
             return Err(CliError::Input(
-                "the camera looks along its up direction, or at its own eye".into(),
+                "the camera looks along its up direction (--up names another), or at its own eye"
+                    .into(),
             ));
         }
         Ok(adjusted)

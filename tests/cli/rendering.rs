@@ -59,6 +59,17 @@ fn the_scene_s_own_camera_draws_beside_the_solution() {
 }
 
 #[test]
+fn a_plan_is_drawn_with_another_way_up() {
+    let (folder, solved) = draft("geometry");
+    let output = folder.path().join("plan");
+    let view = "--eye 0,2.9,0 --look-at 0,0,0 --up 0,0,-1 --width 64 --height 64";
+    let view: Vec<&str> = view.split(' ').collect();
+    radiosity(&[&["render", text(&solved), "-o", text(&output)], &view[..]].concat())
+        .assert_success();
+    assert_eq!(size(&output.join("shaded.png")), (64, 64));
+}
+
+#[test]
 fn a_view_that_cannot_be_is_refused() {
     let (_folder, solved) = draft("geometry");
     let refused = |arguments: &[&str], words: &[&str]| {
@@ -66,7 +77,8 @@ fn a_view_that_cannot_be_is_refused() {
     };
     refused(&["--camera", "back"], &["`back`", "front"]);
     refused(&["--fov", "180"], &["180"]);
-    refused(&["--eye", "0,3,0", "--look-at", "0,0,0"], &["up direction"]);
+    let down = ["--eye", "0,3,0", "--look-at", "0,0,0"];
+    refused(&down, &["up direction", "--up"]);
     let usage = radiosity(&["render", text(&solved), "--eye", "1,2"]);
     assert_eq!(usage.code, Some(2), "{}", usage.err);
     assert!(usage.err.contains("three numbers"), "{}", usage.err);
