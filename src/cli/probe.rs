@@ -26,7 +26,7 @@ const LIGHT: [&str; 6] = [
 pub(super) struct Arguments {
     /// The folder that `solve` wrote
     solution: PathBuf,
-    /// A table with the columns x,y,z,nx,ny,nz (scene units); other columns are kept
+    /// A table with the columns x,y,z,nx,ny,nz (scene units); other columns are kept, but for the light of an earlier probe
     #[arg(required_unless_present = "grid", conflicts_with = "grid")]
     points: Option<PathBuf>,
     /// Where the table goes, with radiosity and irradiance added; standard output if this is left out
@@ -74,8 +74,15 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
     let prober = Prober::new(solution);
     let mut writer = WriterBuilder::new().from_writer(Vec::new());
     let broken = |e: csv::Error| CliError::System(format!("cannot make the table: {e}"));
+    let is_kept = |(_, name): &(usize, &str)| !LIGHT.contains(name);
+    let kept: Vec<usize> = header
+        .iter()
+        .enumerate()
+        .filter(is_kept)
+        .map(|(at, _)| at)
+        .collect();
     writer
-        .write_record(header.iter().chain(LIGHT))
+        .write_record(kept.iter().map(|at| &header[*at]).chain(LIGHT))
         .map_err(broken)?;
     let mut missed = 0;
     for record in reader.records() {
@@ -85,7 +92,7 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
         missed += usize::from(light.is_none());
         let cells = light.map_or_else(|| vec![String::new(); LIGHT.len()], |probe| cells(&probe));
         writer
-            .write_record(record.iter().map(str::to_owned).chain(cells))
+            .write_record(kept.iter().map(|at| record[*at].to_owned()).chain(cells))
             .map_err(broken)?;
     }
     let table = writer

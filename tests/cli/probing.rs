@@ -81,7 +81,11 @@ fn points_get_their_light_and_other_columns_stay() {
     let run = radiosity(&["probe", text(&solved), text(&points), "-o", text(&output)]);
     run.assert_success();
     assert_eq!(run.out, "");
-    assert_probed(&fs::read_to_string(&output).expect("was written"));
+    let once = fs::read_to_string(&output).expect("was written");
+    assert_probed(&once);
+
+    let again = radiosity(&["probe", text(&solved), text(&output)]);
+    assert_eq!(again.out, once, "the light of an earlier probe is replaced");
 }
 
 #[test]
