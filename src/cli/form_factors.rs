@@ -5,7 +5,7 @@ use super::error::Code;
 use super::heat::{self, write_radiosity};
 use super::progress::leave_nothing_on_interrupt;
 use super::say;
-use super::values::{named, not_negative, positive};
+use super::values::{named, not_negative, positive, threads};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
     Dropped, MatrixTable, Sink, check_writable, remove_abandoned, write_atomically,
@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "auto", value_name = "ENGINE")]
     engine: EngineChoice,
     /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
 }
 

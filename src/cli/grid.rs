@@ -1,6 +1,6 @@
 //! `radiosity probe --grid`: illuminance on a plane of work.
 
-use super::values::positive;
+use super::values::{png, positive, threads};
 use super::{CliError, say};
 use crate::geometry;
 use crate::irradiance_at;
@@ -32,7 +32,7 @@ pub(super) struct GridFlags {
     #[arg(long, value_name = "A,B,A,B", value_parser = region, allow_hyphen_values = true, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     region: Option<[f64; 4]>,
     /// A picture in false colours with a legend (PNG)
-    #[arg(long, value_name = "FILE", requires = "grid", conflicts_with = "points", help_heading = GRID)]
+    #[arg(long, value_name = "FILE", value_parser = png, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     picture: Option<PathBuf>,
     /// Lumens per watt, for illuminance; 1 if the emitters were given in lumens
     #[arg(long, value_name = "LM/W", default_value_t = WHITE_EFFICACY, value_parser = positive, requires = "grid", conflicts_with = "points", help_heading = GRID)]
@@ -41,7 +41,7 @@ pub(super) struct GridFlags {
     #[arg(long, default_value = "auto", value_name = "ENGINE", requires = "grid", conflicts_with = "points", help_heading = GRID)]
     engine: EngineChoice,
     /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N", requires = "grid", conflicts_with = "points", help_heading = GRID)]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     threads: usize,
 }
 

@@ -117,6 +117,8 @@ impl Session<'_> {
         }
         match solution.report.stop_reason {
             StopReason::Interrupted => Ok(Code::Interrupted),
+            // While results were written, which they are now.
+            _ if is_interrupted() => Ok(Code::Interrupted),
             _ => Ok(Code::Success),
         }
     }

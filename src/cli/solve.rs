@@ -9,7 +9,7 @@ use super::pictures::draw;
 use super::progress::{Look, catch_interrupts};
 use super::say;
 use super::session::{Session, Watching};
-use super::values::duration;
+use super::values::{duration, threads};
 use crate::output::{
     History, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
 };
@@ -52,7 +52,7 @@ pub(super) struct How {
     #[arg(long, value_name = "ENGINE")]
     pub engine: Option<EngineChoice>,
     /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     pub threads: usize,
     /// Leave the pictures out
     #[arg(long)]
@@ -293,7 +293,8 @@ pub(super) fn summary(solution: &Solution, seconds: f64) -> String {
     let power = &report.power;
     let percent = |part: f64| {
         if power.emitted > 0.0 {
-            100.0 * part / power.emitted
+            // To what is shown, and no zero that is negative.
+            (1e4 * part / power.emitted).round() / 100.0 + 0.0
         } else {
             0.0
         }

@@ -1,6 +1,8 @@
 //! The values of flags: numbers within bounds, names, errors, durations, sizes.
 
 use serde::de::DeserializeOwned;
+use std::ffi::OsStr;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// A value by the name under which reports show it.
@@ -23,6 +25,22 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
     let seconds = with_unit(text, &units, "a duration such as 90, 90s, 15m or 2h")?;
     Ok(Duration::from_secs_f64(seconds))
+}
+
+/// A number of threads. More than this are a slip of the hand, and starting them may fail halfway.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| *count <= 1024);
+    count.ok_or_else(|| "expected a number of threads from 0 to 1024".into())
+}
+
+/// A file that is to become a PNG.
+pub(super) fn png(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_png = |end: &OsStr| end.eq_ignore_ascii_case("png");
+    match path.extension() {
+        Some(end) if !is_png(end) => Err("expected a name that ends in .png".into()),
+        _ => Ok(path),
+    }
 }
 
 /// Bytes, or a number with a unit.

@@ -150,6 +150,9 @@ fn planes_face_either_way_and_points_in_solids_are_left_out() {
         let plane = ["probe", text(&solution), "--grid", grid];
         radiosity(&[&plane[..], more].concat())
     };
+    let jpeg = probe("y=100mm", &["--picture", "lux.jpg"]);
+    assert_eq!(jpeg.code, Some(2));
+    assert!(jpeg.err.contains(".png"), "{}", jpeg.err);
     // 100 mm above the floor some points lie inside the two blocks.
     let run = probe("y=100mm", &["--spacing", "0.05m"]);
     run.assert_success();

@@ -128,6 +128,7 @@ fn wrong_usage_ends_with_2() {
         &["--tolerance", "inf"],
         &["--time-limit", "0"],
         &["--threads=-1"],
+        &["--threads", "100000"],
         &["--unknown"],
     ] {
         let run = radiosity(&[&solve[..], flags].concat());
