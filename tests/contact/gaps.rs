@@ -164,14 +164,11 @@ fn boxes_at_random_close_above_a_floor_leave_hardly_a_needle() {
     assert!(needles <= 5, "{needles}");
 }
 
-/// A box above a floor with a light over it, solved.
-fn lit(gap: f64, turn: DQuat) -> Solution {
-    let light = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
-    let light = light.map(|(x, z)| DVec3::new(x + 0.3, 3.0, z + 0.9));
-    let mut scene = floor(4.0)
-        .and(&cuboid(DVec3::ONE), turn, DVec3::Y * (0.5 + gap))
-        .with(&light)
-        .scene(true);
+/// Polygons with a light over them that shines down, solved as a draft.
+fn lit(below: Polygons, [x, z]: [f64; 2], side: f64) -> Solution {
+    let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+    let light = corners.map(|(a, b)| DVec3::new(x + side * a, 3.0, z + side * b));
+    let mut scene = below.with(&light).scene(true);
     scene.materials.push(Material {
         name: "light".into(),
         reflectance: Vec3::ZERO,
@@ -191,9 +188,24 @@ fn lit(gap: f64, turn: DQuat) -> Solution {
 }
 
 #[test]
+fn a_floor_with_tiles_close_above_it_absorbs_what_a_plane_does() {
+    let tile = floor(0.8);
+    let at = |i: i32| DVec3::new(f64::from(i % 8) - 3.5, 1e-3, f64::from(i / 8) - 3.5);
+    let tiled = (0..64).fold(floor(8.0), |all, i| all.and(&tile, DQuat::IDENTITY, at(i)));
+    let power = lit(tiled, [0.0, 0.0], 0.2).report.power;
+    // Of a small light at the middle of a square, facing it, four times the form factor of a corner (Howell, C-14).
+    let leg = 4.0 / 3.0;
+    let slant = (1.0f64 + leg * leg).sqrt();
+    let factor = 4.0 / std::f64::consts::PI * (leg / slant) * (leg / slant).atan();
+    let share = power.absorbed / (0.5 * factor * power.emitted);
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+}
+
+#[test]
 fn beside_a_hovering_box_it_is_as_bright_as_beside_one_that_stands() {
     for turn in [0.0, 0.4].map(DQuat::from_rotation_y) {
-        let [standing, hovering] = [0.0, 4e-4].map(|gap| lit(gap, turn));
+        let above = |gap| floor(4.0).and(&cuboid(DVec3::ONE), turn, DVec3::Y * (0.5 + gap));
+        let [standing, hovering] = [0.0, 4e-4].map(|gap| lit(above(gap), [0.3, 0.9], 1.0));
         let [standing, hovering] = [&standing, &hovering].map(Prober::new);
         let off = |at: DVec3, normal: DVec3| {
             let [there, here] = [&standing, &hovering].map(|prober| {
