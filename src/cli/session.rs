@@ -115,12 +115,11 @@ impl Session<'_> {
                 }
             }
         }
-        match solution.report.stop_reason {
-            StopReason::Interrupted => Ok(Code::Interrupted),
-            // While results were written, which they are now.
-            _ if is_interrupted() => Ok(Code::Interrupted),
-            _ => Ok(Code::Success),
-        }
+        // Also one that came while results were written, which they are now.
+        Ok(match is_interrupted() {
+            true => Code::Interrupted,
+            false => Code::Success,
+        })
     }
 
     /// The end for a program.

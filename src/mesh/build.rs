@@ -42,10 +42,10 @@ impl Mesh {
         for piece in pieces.list {
             let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
+            let first = mesh.patches.len() as u32;
             let mut corners = piece.corners().to_vec();
             let mut front = Patch::new(piece.surface, surface.polygon, &corners, false);
             front.outline = piece.outline;
-            let first = mesh.patches.len() as u32;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
             mesh.add_patch(front, shortest, &mut known);

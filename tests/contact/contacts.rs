@@ -1,11 +1,8 @@
 //! Boxes, beams, partitions, legs and spheres.
 
-use super::setup::{Pieces, Polygons, corners, cuboid, floor, footprint, pieces, sphere};
+use super::setup::{Pieces, Polygons, UNIT, corners, cuboid, floor, footprint, pieces, sphere};
 use glam::{DQuat, DVec3};
 use radiosity::scene::{Scene, Sides};
-
-/// The footprint of a box of this size around the origin.
-const UNIT: [DVec3; 2] = [DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)];
 
 fn assert_footprint(pieces: &Pieces, scene: &Scene) {
     for side in footprint(UNIT) {

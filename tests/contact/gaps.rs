@@ -1,6 +1,6 @@
 //! Surfaces that come closer to others than elements can resolve are split along the rims of these.
 
-use super::setup::{Polygons, cuboid, floor, footprint, pieces_down_to, sphere};
+use super::setup::{Polygons, UNIT, cuboid, floor, footprint, pieces_down_to, sphere};
 use glam::{DQuat, DVec3, Vec3};
 use radiosity::geometry::polygon::{diameter, vector_area};
 use radiosity::scene::{Material, Scene};
@@ -10,8 +10,6 @@ use radiosity::{Settings, solve};
 
 /// The least size of elements, of a floor of four metres: gaps up to two millimetres are thin against these eight.
 const SMALLEST: f64 = 0.002;
-
-const UNIT: [DVec3; 2] = [DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)];
 
 /// A floor of two triangles.
 fn halves(size: f64) -> Polygons {

@@ -148,6 +148,9 @@ pub struct Pieces {
     pub of: Vec<Vec<Vec<DVec3>>>,
 }
 
+/// The footprint of a box of this size around the origin.
+pub const UNIT: [DVec3; 2] = [DVec3::new(-0.5, 0.0, -0.5), DVec3::new(0.5, 0.0, 0.5)];
+
 /// The sides of a rectangle on the floor.
 pub fn footprint([low, high]: [DVec3; 2]) -> [[DVec3; 2]; 4] {
     let at = [

@@ -127,6 +127,14 @@ impl Face {
         [self.flat[side], self.flat[(side + 1) % self.count]]
     }
 
+    /// Where it ends, in the plane.
+    pub fn outline(&self) -> Vec<[DVec2; 2]> {
+        match &self.border {
+            Some(border) => border.lines.clone(),
+            None => (0..self.count).map(|side| self.side(side)).collect(),
+        }
+    }
+
     /// Distance in front of the plane.
     pub fn height(&self, point: DVec3) -> f64 {
         self.normal.dot(point - self.centre)

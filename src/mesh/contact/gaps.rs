@@ -87,8 +87,7 @@ impl Gaps {
         }
     }
 
-    /// The rims in front of a face, or on both of its sides, with feet that keep away from `lines`, those of contact and
-    /// on the border. `near` gives the surfaces closer than a distance.
+    /// The rims in front of a face, or on both of its sides, with feet that keep away from the border and from `lines` of contact. `near` gives the surfaces closer than a distance.
     pub fn rims<I: Iterator<Item = Corners>>(
         &self,
         face: &Face,
@@ -123,7 +122,7 @@ impl Gaps {
         }
         // Of rims above one another the lowest is sharpest.
         rims.sort_by(|x, y| x.height.total_cmp(&y.height));
-        bent(&rims, lines)
+        bent(&rims, &[&face.outline()[..], lines].concat())
     }
 
     /// The sides that a surface has in the gap, between the heights `lowest` and that of the gap.

@@ -180,8 +180,7 @@ impl<'a> Splitter<'a> {
     fn alone(&self, surface: u32) -> Option<(u32, Option<Vec<Piece>>)> {
         let face = Face::new(&self.shapes.corners(surface), self.reach)?;
         let lines = self.lines(&face, surface);
-        let sides: Vec<Line> = (0..face.flat().len()).map(|i| face.side(i)).collect();
-        let rims = self.rims(&face, surface, &[&sides[..], &lines].concat());
+        let rims = self.rims(&face, surface, &lines);
         if lines.is_empty() && rims.is_empty() {
             return None;
         }
@@ -211,8 +210,7 @@ impl<'a> Splitter<'a> {
         let face = Face::around(&sides, areas.sum(), self.reach)?;
         let around = face.border.as_ref()?;
         let met = self.lines(&face, members[0]);
-        let lines = [&around.lines[..], &met].concat();
-        let rims = self.rims(&face, members[0], &lines);
+        let rims = self.rims(&face, members[0], &met);
         // Most regions are two halves of a quad that others meet on its border only.
         let free = |line: &Line| around.runs_along(*line, self.reach);
         if let Some(corners) = regions::quad(&border)
@@ -222,6 +220,7 @@ impl<'a> Splitter<'a> {
         {
             return Some(vec![Piece::new(members[0], &corners.map(at), [true; 4])]);
         }
+        let lines = [&around.lines[..], &met].concat();
         self.split(&face, members[0], &lines, &rims, [true; 4])
     }
 
@@ -231,7 +230,7 @@ impl<'a> Splitter<'a> {
         lines::lines(face, others, &self.shapes.positions)
     }
 
-    /// Where surfaces of other regions end close in front of a face, away from lines on it.
+    /// Where surfaces of other regions end close in front of a face, away from its border and from lines on it.
     fn rims(&self, face: &Face, first: u32, lines: &[Line]) -> Vec<Rim> {
         let both_sides = self.shapes.surfaces[first as usize].sides == Sides::Both;
         let near = |margin| self.others(face, first, margin);
