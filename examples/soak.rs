@@ -357,7 +357,7 @@ fn difference(of: &Solution, other: &Solution) -> f64 {
     let prober = Prober::new(other);
     let (mut square, mut sum, mut area) = (0.0, 0.0, 0.0);
     for leaf in of.mesh.leaves() {
-        let element = &of.mesh.elements[leaf as usize];
+        let element = &of.mesh.element(leaf);
         if of.mesh.buried[element.centre as usize] {
             continue;
         }

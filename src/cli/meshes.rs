@@ -114,7 +114,7 @@ impl Exporter<'_> {
         let both: FxHashSet<u32> = backs.map(|patch| patch.surface).collect();
         let mut two_sided = vec![false; self.lit.vertices.len()];
         for triangle in &self.lit.triangles {
-            let patch = mesh.elements[triangle.element as usize].patch;
+            let patch = mesh.elements.patch_of(triangle.element);
             if both.contains(&mesh.patch(patch).surface) {
                 triangle
                     .vertices
@@ -143,10 +143,10 @@ impl Exporter<'_> {
 
     fn vtu(&self, path: &Path) -> Result<(), CliError> {
         let errors = self.solution.triangle_errors(self.lit);
-        let elements = &self.solution.mesh.elements;
+        let mesh = &self.solution.mesh;
         let levels = self.lit.triangles.iter();
         let levels: Vec<u8> = levels
-            .map(|triangle| elements[triangle.element as usize].level)
+            .map(|triangle| mesh.element(triangle.element).level)
             .collect();
         let facts = VtuFacts {
             metres_per_unit: self.solution.metres_per_unit,

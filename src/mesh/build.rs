@@ -1,7 +1,7 @@
 //! From a scene to its coarsest mesh.
 
 use super::patches::{Known, MOST_ALONG};
-use super::{Element, Lattice, Mesh, NONE, Patch, Patches, UNIT, contact};
+use super::{Elements, Lattice, Mesh, Patch, Patches, Vertices, contact};
 use crate::geometry::Frame;
 use crate::radiometry::exitance_from_radiance;
 use crate::scene::{Scene, Sides};
@@ -64,7 +64,7 @@ impl Mesh {
         }
         drop(known);
         mesh.patches.shrink();
-        mesh.add_roots();
+        mesh.make_grids();
         mesh.split_to_initial_size();
         mesh.finish_topology(0, &[]);
         mesh
@@ -75,8 +75,8 @@ impl Mesh {
         Self {
             frame,
             patches: Patches::default(),
-            elements: Vec::new(),
-            vertices: Vec::new(),
+            elements: Elements::default(),
+            vertices: Vertices::default(),
             buried: Vec::new(),
             weights: Vec::new(),
             buried_weights: FxHashMap::default(),
@@ -100,70 +100,17 @@ impl Mesh {
     fn add_patch(&mut self, mut patch: Patch, shortest: f64, known: &mut Known) {
         patch.grid = grid_of(&patch, shortest);
         let (columns, rows) = patch.grid;
-        let (element, vertex) = self.first_after();
+        let (element, vertex) = self.patches.first_after();
         patch.roots = element..element + columns * rows;
         patch.first_vertex = vertex;
         self.patches.push(&patch, known);
     }
 
-    /// The elements and vertices of the coarsest grids of all patches so far.
-    fn first_after(&self) -> (u32, u32) {
-        let last = self.patches.iter().next_back();
-        last.map_or((0, 0), |last| (last.roots.end, last.first_vertices().end))
-    }
-
-    /// Makes the coarsest grids of all patches, with room for as much again: what is not written to takes no memory, but growing
-    /// into a new place takes that of the old one too.
-    fn add_roots(&mut self) {
-        let (elements, vertices) = self.first_after();
-        self.elements.reserve(2 * elements as usize);
-        self.vertices.reserve(2 * vertices as usize);
+    /// Makes the coarsest grids of all patches.
+    pub(super) fn make_grids(&mut self) {
+        self.elements = Elements::of_grids(self.patches.grids().map(|grid| grid.elements()));
+        self.vertices = Vertices::of_grids(self.patches.grids().map(|grid| grid.vertices()));
         self.touched = (0..self.patches.len() as u32).collect();
-        for id in 0..self.patches.len() as u32 {
-            let patch = self.patch(id);
-            if patch.is_triangle() {
-                let corners = [(0, 0), (UNIT, 0), (0, UNIT)];
-                self.add_root(id, &corners.map(|(u, v)| Lattice::new(u, v)));
-                continue;
-            }
-            let (columns, rows) = patch.grid;
-            let (du, dv) = (UNIT / columns, UNIT / rows);
-            for row in 0..rows {
-                for column in 0..columns {
-                    let (u, v) = (column * du, row * dv);
-                    let corners = [(u, v), (u + du, v), (u + du, v + dv), (u, v + dv)];
-                    self.add_root(id, &corners.map(|(u, v)| Lattice::new(u, v)));
-                }
-            }
-        }
-    }
-
-    fn add_root(&mut self, patch: u32, corners: &[Lattice]) {
-        let mut element = Element {
-            patch,
-            corners: [NONE; 4],
-            centre: NONE,
-            hanging: [NONE; 4],
-            children: NONE,
-            level: 0,
-        };
-        for (slot, corner) in element.corners.iter_mut().zip(corners) {
-            *slot = self.first_vertex(patch, *corner);
-        }
-        element.centre = self.first_vertex(patch, centre_of(corners));
-        self.elements.push(element);
-    }
-
-    /// A vertex of the coarsest grid of a patch. Those of a single element are all new.
-    fn first_vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
-        if !self.is_indexed(patch) {
-            return self.make_vertex(patch, lattice);
-        }
-        self.vertex_at(patch, lattice).unwrap_or_else(|| {
-            let vertex = self.make_vertex(patch, lattice);
-            self.index(vertex);
-            vertex
-        })
     }
 
     fn split_to_initial_size(&mut self) {

@@ -75,9 +75,8 @@ impl Mesh {
     /// The edges of all fans from their buried ends, in order.
     fn edges_from_buried(&self) -> Vec<(u32, u32)> {
         let is_buried = |vertex: &u32| self.buried[*vertex as usize];
-        let numbered = (0..).zip(&self.vertices);
-        let buried = numbered.filter(|(number, _)| is_buried(number));
-        let mut patches: Vec<u32> = buried.map(|(_, vertex)| vertex.patch).collect();
+        let buried = (0..self.vertices.len() as u32).filter(is_buried);
+        let mut patches: Vec<u32> = buried.map(|v| self.vertices.patch_of(v)).collect();
         patches.sort_unstable();
         patches.dedup();
         let edges_of = |leaf: u32| {
@@ -89,7 +88,7 @@ impl Mesh {
                 .filter(|(from, _)| is_buried(from))
         };
         let elements = self.elements_on(&patches).into_par_iter();
-        let is_leaf = |e: &u32| self.elements[*e as usize].is_leaf();
+        let is_leaf = |e: &u32| self.elements.is_leaf(*e);
         let leaves = elements.with_min_len(1024).filter(is_leaf);
         let edges = leaves.flat_map_iter(edges_of);
         let mut edges: Vec<(u32, u32)> = edges.collect();

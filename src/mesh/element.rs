@@ -49,6 +49,19 @@ impl Element {
         (value(self.centre) - sum / corners.len() as f32).abs()
     }
 
+    /// The triangles of its fan if it is a leaf: its centre, then two vertices that follow one another on its boundary, from the first corner on.
+    pub fn fan(self) -> impl Iterator<Item = [u32; 3]> {
+        let count = self.corners().len();
+        (0..count).flat_map(move |side| {
+            let (a, b) = (self.corners[side], self.corners[(side + 1) % count]);
+            let (first, second) = match self.hanging[side] {
+                NONE => (b, None),
+                middle => (middle, Some([self.centre, middle, b])),
+            };
+            std::iter::once([self.centre, a, first]).chain(second)
+        })
+    }
+
     /// Its four children; none for a leaf.
     pub fn parts(&self) -> std::ops::Range<u32> {
         if self.is_leaf() {

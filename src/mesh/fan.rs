@@ -1,6 +1,6 @@
 //! The interpolant: linear on the triangles around the centre of each element.
 
-use super::{Lattice, Mesh, NONE, UNIT};
+use super::{Lattice, Mesh, UNIT};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
@@ -8,23 +8,9 @@ use glam::DVec3;
 pub type Weighted = (u32, f32);
 
 impl Mesh {
-    /// The triangles of a leaf's fan: its centre, then two vertices that follow one another on its boundary, from the first corner on.
-    pub fn fan(&self, element: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
-        let of = self.elements[element as usize];
-        let count = of.corners().len();
-        (0..count).flat_map(move |side| {
-            let (a, b, middle) = (
-                of.corners[side],
-                of.corners[(side + 1) % count],
-                of.hanging[side],
-            );
-            let (first, second) = if middle == NONE {
-                (b, None)
-            } else {
-                (middle, Some([of.centre, middle, b]))
-            };
-            std::iter::once([of.centre, a, first]).chain(second)
-        })
+    /// The triangles of a leaf's fan; see [`Element::fan`].
+    pub fn fan(&self, leaf: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
+        self.element(leaf).fan()
     }
 
     /// The leaf that covers the point (u, v) of a patch, coordinates clamped to the patch.
@@ -33,7 +19,7 @@ impl Mesh {
         let (columns, rows) = of.grid;
         let cell = |x: f64, n: u32| ((x * f64::from(n)).max(0.0) as u32).min(n - 1);
         let mut element = of.roots.start + cell(v, rows) * columns + cell(u, columns);
-        while !self.elements[element as usize].is_leaf() {
+        while !self.elements.is_leaf(element) {
             element = self.child_at(element, u, v);
         }
         element
@@ -41,8 +27,8 @@ impl Mesh {
 
     /// The child of a split element that covers the point (u, v).
     pub fn child_at(&self, element: u32, u: f64, v: f64) -> u32 {
-        let of = &self.elements[element as usize];
-        let lattice = |vertex: u32| self.vertices[vertex as usize].lattice;
+        let of = self.element(element);
+        let lattice = |vertex: u32| self.lattice_of(vertex);
         let steps = |x: f64| x * f64::from(UNIT);
         let (u, v) = (steps(u), steps(v));
         let quarter = if of.corners().len() == 4 {
@@ -79,33 +65,27 @@ impl Mesh {
 
     /// Longest extent of an element in (u, v), where the patch is 1.
     pub fn unit_side(&self, element: u32) -> f64 {
-        let lattice = |v: u32| self.vertices[v as usize].lattice;
+        let lattice = |v: u32| self.lattice_of(v);
         let step = |(_, a, b): (usize, u32, u32)| {
             lattice(a)
                 .u
                 .abs_diff(lattice(b).u)
                 .max(lattice(a).v.abs_diff(lattice(b).v))
         };
-        f64::from(
-            self.elements[element as usize]
-                .sides()
-                .map(step)
-                .max()
-                .unwrap_or(0),
-        ) / f64::from(UNIT)
+        f64::from(self.element(element).sides().map(step).max().unwrap_or(0)) / f64::from(UNIT)
     }
 
     /// The fan triangle of a leaf that covers a point of its plane, with barycentric weights; a point a hair outside
     /// gets the nearest triangle's continuation, clamped to it.
     pub fn interpolate(&self, leaf: u32, point: DVec3) -> [Weighted; 3] {
-        let of = &self.elements[leaf as usize];
+        let of = self.element(leaf);
         let patch = self.patch(of.patch);
         let normal = patch.normal;
-        let position = |vertex: u32| patch.position(self.vertices[vertex as usize].lattice);
+        let position = |vertex: u32| patch.position(self.lattice_of(vertex));
         let centre = position(of.centre);
         let mut next = position(of.corners[0]);
         let mut best = ([(0, 0.0); 3], f64::NEG_INFINITY);
-        for triangle in self.fan(leaf) {
+        for triangle in of.fan() {
             let (b, c) = (next, position(triangle[2]));
             next = c;
             let area = (b - centre).cross(c - centre).dot(normal);

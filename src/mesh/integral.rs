@@ -23,7 +23,7 @@ impl Mesh {
         let leaves: Vec<u32> = leaves.collect();
         let triangles = |of: &Element| {
             let patch = self.patch(of.patch);
-            let position = |vertex: u32| patch.position(self.vertices[vertex as usize].lattice);
+            let position = |vertex: u32| patch.position(self.lattice_of(vertex));
             let centre = position(of.centre);
             let arms = of.corners.map(|corner| match corner {
                 NONE => DVec3::ZERO,
@@ -38,7 +38,7 @@ impl Mesh {
         let areas: Vec<[f64; 4]> = leaves
             .par_iter()
             .with_min_len(1024)
-            .map(|leaf| triangles(&self.elements[*leaf as usize]))
+            .map(|leaf| triangles(&self.element(*leaf)))
             .collect();
         let mut weights = take(&mut self.weights);
         let mut buried_weights = take(&mut self.buried_weights);
@@ -47,7 +47,7 @@ impl Mesh {
         weights.resize(self.vertices.len(), 0.0);
         vertices.clone().for_each(|v| weights[v as usize] = 0.0);
         for (leaf, areas) in leaves.iter().zip(areas) {
-            let of = &self.elements[*leaf as usize];
+            let of = self.element(*leaf);
             let corners = of.corners();
             let mut whole = 0.0;
             for (i, a, b) in of.sides() {

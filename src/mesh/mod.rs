@@ -11,7 +11,9 @@ mod build;
 mod buried;
 mod contact;
 mod element;
+mod elements;
 mod fan;
+mod grid;
 mod integral;
 mod lattice;
 mod patch;
@@ -20,36 +22,23 @@ mod refine;
 mod restore;
 mod sides;
 mod stored;
+mod vertices;
 mod weld;
 
 pub use build::MeshLimits;
 pub use contact::{Piece, Pieces, Regions, pieces as split_at_contacts, regions};
 pub use element::{Element, NONE};
+pub use elements::Elements;
 pub use lattice::{Lattice, UNIT};
 pub use patch::{Patch, SideKey};
 pub use patches::Patches;
 pub use sides::{Side, Sides};
 pub use stored::StoredMesh;
+pub use vertices::{Vertex, Vertices};
 
 use crate::geometry::Frame;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
-
-/// A patch with no more vertices than one element has is searched through: most patches of a large scene are such, and an index of theirs
-/// would be as large as they are.
-const FEW: usize = 5;
-
-/// A vertex: a corner or the centre of elements of one patch. Where it is in the frame is found when it is asked for: kept, that would
-/// be more than all the rest of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Vertex {
-    /// The patch that it belongs to.
-    pub patch: u32,
-    /// Where it is on its patch.
-    pub lattice: Lattice,
-    /// The first element that has it, for which it was made.
-    maker: u32,
-}
 
 /// The adaptive mesh of a scene, without the light on it.
 #[derive(Debug, Clone)]
@@ -58,10 +47,10 @@ pub struct Mesh {
     pub frame: Frame,
     /// The radiating sides, in the order of the scene's surfaces, of which each may be in several pieces.
     pub patches: Patches,
-    /// All elements, parents included; children follow one another.
-    pub elements: Vec<Element>,
-    /// All vertices, in the order of their making.
-    pub vertices: Vec<Vertex>,
+    /// All elements, parents included; see [`Mesh::element`].
+    pub elements: Elements,
+    /// All vertices; see [`Mesh::vertex`].
+    pub vertices: Vertices,
     /// Vertices inside a solid; see [`Mesh::continue_to_buried`].
     pub buried: Vec<bool>,
     /// The area that each vertex stands for, 0 if it is buried: the integral of a quantity over what is open is Σ weight · value,
@@ -75,7 +64,7 @@ pub struct Mesh {
     touched: Vec<u32>,
     /// The vertices that a patch got after those of its coarsest grid, which follow one another, if it got any.
     later: FxHashMap<u32, Vec<u32>>,
-    /// The vertices of patches that have more than [`FEW`], by place.
+    /// These vertices by place.
     at: FxHashMap<(u32, Lattice), u32>,
     limits: MeshLimits,
     /// How far from the border of patches beside thin gaps light is evaluated, at least; in the frame.
@@ -87,12 +76,12 @@ pub struct Mesh {
 impl Mesh {
     /// The leaves: elements that are not split.
     pub fn leaves(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.elements.len() as u32).filter(|e| self.elements[*e as usize].is_leaf())
+        (0..self.elements.len() as u32).filter(|e| self.elements.is_leaf(*e))
     }
 
     /// The leaves of a patch.
     pub fn leaves_of(&self, patch: &Patch) -> Vec<u32> {
-        let is_leaf = |e: &u32| self.elements[*e as usize].is_leaf();
+        let is_leaf = |e: &u32| self.elements.is_leaf(*e);
         self.elements_of(patch).filter(is_leaf).collect()
     }
 
@@ -101,7 +90,7 @@ impl Mesh {
         let mut open: Vec<u32> = patch.roots.clone().rev().collect();
         std::iter::from_fn(move || {
             let element = open.pop()?;
-            open.extend(self.elements[element as usize].parts().rev());
+            open.extend(self.element(element).parts().rev());
             Some(element)
         })
     }
@@ -111,7 +100,7 @@ impl Mesh {
         let mut open: Vec<u32> = patch.roots.clone().rev().collect();
         let mut cut = Vec::new();
         while let Some(element) = open.pop() {
-            let of = &self.elements[element as usize];
+            let of = self.element(element);
             if of.is_leaf() || self.longest_side(element) <= longest {
                 cut.push(element);
             } else {
@@ -121,16 +110,14 @@ impl Mesh {
         cut
     }
 
-    /// How many leaves there are: a split makes four elements of one.
+    /// How many leaves there are.
     pub fn leaf_count(&self) -> usize {
-        let roots = self.patches.iter().next_back();
-        let roots = roots.map_or(0, |patch| patch.roots.end) as usize;
-        roots + (self.elements.len() - roots) / 4 * 3
+        self.elements.leaves()
     }
 
     /// How many vertices there is room for, also for what is kept by vertex, before anything has to be moved.
     fn vertex_room(&self) -> usize {
-        self.vertices.capacity()
+        self.vertices.room()
     }
 
     /// A value for each vertex, with room for those of vertices to come.
@@ -148,13 +135,13 @@ impl Mesh {
 
     /// The vertices of a patch, in the order of their making.
     pub fn vertices_of(&self, patch: u32) -> impl Iterator<Item = u32> + Clone + '_ {
-        let first = self.patches.first_vertices(patch as usize);
+        let first = self.patches.first_vertices(patch);
         first.chain(self.later_of(patch))
     }
 
     /// How many vertices a patch has.
     pub fn vertex_count(&self, patch: u32) -> usize {
-        let first = self.patches.first_vertices(patch as usize);
+        let first = self.patches.first_vertices(patch);
         first.len() + self.later_of(patch).len()
     }
 
@@ -165,24 +152,8 @@ impl Mesh {
 
     /// The vertex of a patch at a lattice point, if there is one.
     pub fn vertex_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
-        if self.is_indexed(patch) {
-            return self.at.get(&(patch, lattice)).copied();
-        }
-        let is_there = |v: &u32| self.vertices[*v as usize].lattice == lattice;
-        let mut first = self.patches.first_vertices(patch as usize);
-        first.find(is_there)
-    }
-
-    /// Whether a patch has more than [`FEW`] vertices.
-    fn is_indexed(&self, patch: u32) -> bool {
-        let first = self.patches.first_vertices(patch as usize);
-        first.len() > FEW || self.later.contains_key(&patch)
-    }
-
-    /// Takes a vertex into the index.
-    fn index(&mut self, vertex: u32) {
-        let Vertex { patch, lattice, .. } = self.vertices[vertex as usize];
-        self.at.insert((patch, lattice), vertex);
+        let first = self.patches.first_at(patch, lattice);
+        first.or_else(|| self.at.get(&(patch, lattice)).copied())
     }
 
     /// The area that a vertex stands for, buried or not.
@@ -195,14 +166,14 @@ impl Mesh {
 
     /// Position of a vertex in the frame.
     pub fn position(&self, vertex: u32) -> DVec3 {
-        let vertex = &self.vertices[vertex as usize];
+        let vertex = self.vertex(vertex);
         self.patch(vertex.patch).position(vertex.lattice)
     }
 
     /// Where light is evaluated at a vertex, in the frame: its position, moved a hair inwards on the border of its patch.
     pub fn point(&self, vertex: u32) -> DVec3 {
-        let of = &self.vertices[vertex as usize];
-        self.point_on(&self.patch(of.patch), of)
+        let of = self.vertex(vertex);
+        self.point_on(&self.patch(of.patch), &of)
     }
 
     /// That of a vertex of a patch which is at hand.
@@ -225,10 +196,7 @@ impl Mesh {
 
     /// The deepest level of any element.
     pub fn depth(&self) -> u32 {
-        self.elements
-            .iter()
-            .map(|e| u32::from(e.level))
-            .max()
-            .unwrap_or(0)
+        let levels = (0..self.elements.len() as u32).map(|e| u32::from(self.element(e).level));
+        levels.max().unwrap_or(0)
     }
 }

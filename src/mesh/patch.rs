@@ -1,5 +1,6 @@
 //! One radiating side of a surface, or of a piece of it.
 
+use super::grid::Grid;
 use super::lattice::{Lattice, UNIT};
 use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
@@ -83,7 +84,12 @@ impl Patch {
 
     /// The vertices of its coarsest grid.
     pub fn first_vertices(&self) -> Range<u32> {
-        self.first_vertex..self.first_vertex + vertices_in(self.is_triangle(), self.grid)
+        let grid = Grid {
+            is_triangle: self.is_triangle(),
+            columns: self.grid.0,
+            rows: self.grid.1,
+        };
+        self.first_vertex..self.first_vertex + grid.vertices()
     }
 
     /// Whether it has three corners.
@@ -166,14 +172,5 @@ impl Patch {
         } else {
             low(u).then_some(3)
         }
-    }
-}
-
-/// How many vertices the coarsest grid of a patch has.
-pub(super) fn vertices_in(triangle: bool, (columns, rows): (u32, u32)) -> u32 {
-    if triangle {
-        4
-    } else {
-        (columns + 1) * (rows + 1) + columns * rows
     }
 }

@@ -1,8 +1,8 @@
 //! All patches of a mesh as they are kept: of some scenes there is one for every four vertices, and what follows from the corners, or is
 //! the same for many, would take most of the memory.
 
-use super::Patch;
-use super::patch::vertices_in;
+use super::grid::Grid;
+use super::{Element, Lattice, Patch, Vertex};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -64,13 +64,13 @@ impl Patches {
         let corners = of.corners.map(|corner| self.corners[corner as usize]);
         let count = if of.is_triangle { 3 } else { 4 };
         let [reflectance, exitance] = self.colours[of.colours as usize];
-        let [columns, rows] = of.grid.map(u32::from);
+        let grid = of.grid();
         Patch {
             outline: of.outline,
             reflectance,
             exitance,
-            roots: of.root..of.root + columns * rows,
-            grid: (columns, rows),
+            roots: of.root..of.root + grid.elements(),
+            grid: (grid.columns, grid.rows),
             first_vertex: of.first_vertex,
             ..Patch::new(of.surface, of.polygon, &corners[..count], of.back)
         }
@@ -82,12 +82,53 @@ impl Patches {
         self.colours[self.records[number].colours as usize][0]
     }
 
+    /// The coarsest grid of each.
+    pub(super) fn grids(&self) -> impl Iterator<Item = Grid> + Clone + '_ {
+        self.records.iter().map(Record::grid)
+    }
+
+    /// The first element and the first vertex after those of the coarsest grids.
+    pub(super) fn first_after(&self) -> (u32, u32) {
+        self.records.last().map_or((0, 0), |last| {
+            let grid = last.grid();
+            (
+                last.root + grid.elements(),
+                last.first_vertex + grid.vertices(),
+            )
+        })
+    }
+
     /// The vertices of its coarsest grid.
     #[inline]
-    pub(super) fn first_vertices(&self, number: usize) -> Range<u32> {
-        let of = &self.records[number];
-        let [columns, rows] = of.grid.map(u32::from);
-        of.first_vertex..of.first_vertex + vertices_in(of.is_triangle, (columns, rows))
+    pub(super) fn first_vertices(&self, number: u32) -> Range<u32> {
+        let of = &self.records[number as usize];
+        of.first_vertex..of.first_vertex + of.grid().vertices()
+    }
+
+    /// That of these with a number.
+    #[inline(always)]
+    pub(super) fn first_vertex(&self, patch: u32, number: u32) -> Vertex {
+        let of = &self.records[patch as usize];
+        let (grid, of_grid) = (of.grid(), number - of.first_vertex);
+        Vertex {
+            patch,
+            lattice: grid.lattice(of_grid),
+            maker: of.root + grid.maker(of_grid),
+        }
+    }
+
+    /// That of these at a lattice point, if there is one.
+    pub(super) fn first_at(&self, patch: u32, lattice: Lattice) -> Option<u32> {
+        let of = &self.records[patch as usize];
+        let of_grid = of.grid().vertex_at(lattice);
+        of_grid.map(|vertex| of.first_vertex + vertex)
+    }
+
+    /// The element of its coarsest grid with a number, as it is before it is split.
+    #[inline(always)]
+    pub(super) fn root(&self, patch: u32, number: u32) -> Element {
+        let of = &self.records[patch as usize];
+        of.grid().element(patch, number - of.root, of.first_vertex)
     }
 
     /// All of them, in order.
@@ -157,6 +198,18 @@ impl Patches {
     pub(super) fn shrink(&mut self) {
         self.records.shrink_to_fit();
         self.corners.shrink_to_fit();
+    }
+}
+
+impl Record {
+    #[inline(always)]
+    fn grid(&self) -> Grid {
+        let [columns, rows] = self.grid.map(u32::from);
+        Grid {
+            is_triangle: self.is_triangle,
+            columns,
+            rows,
+        }
     }
 }
 

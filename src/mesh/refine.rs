@@ -22,8 +22,8 @@ const MOST_BESIDE_GAP: f64 = 0.5;
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
-        let of = &self.elements[element as usize];
-        let (corners, count) = self.corner_positions(&self.patch(of.patch), of);
+        let of = self.element(element);
+        let (corners, count) = self.corner_positions(&self.patch(of.patch), &of);
         let square = |i: usize| corners[i].distance_squared(corners[(i + 1) % count]);
         (0..count).map(square).fold(0.0, f64::max).sqrt()
     }
@@ -35,7 +35,7 @@ impl Mesh {
 
     /// Whether an element may be split, were it as small as this fraction of the scene's extent that none may.
     pub fn may_split_above(&self, element: u32, min_size: f64) -> bool {
-        let level = u32::from(self.elements[element as usize].level);
+        let level = u32::from(self.element(element).level);
         // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
         level < self.limits.max_depth.min(17)
             && self.longest_side(element) > min_size * self.frame.extent()
@@ -44,17 +44,17 @@ impl Mesh {
     /// Whether a patch is one element, which the limits do not allow to be split.
     pub fn is_small(&self, patch: &Patch) -> bool {
         let root = patch.roots.start;
-        let is_whole = patch.roots.len() == 1 && self.elements[root as usize].is_leaf();
+        let is_whole = patch.roots.len() == 1 && self.elements.is_leaf(root);
         is_whole && !self.may_split(root)
     }
 
     /// Splits a leaf into four; returns the first child.
     pub fn split(&mut self, element: u32) -> u32 {
-        let parent = self.elements[element as usize];
+        let parent = self.element(element);
         debug_assert!(parent.is_leaf());
         self.touch(parent.patch);
         let first = self.elements.len() as u32;
-        let at = |mesh: &Self, v: u32| mesh.vertices[v as usize].lattice;
+        let at = |mesh: &Self, v: u32| mesh.lattice_of(v);
         let [a, b, c] = [0, 1, 2].map(|i| at(self, parent.corners[i]));
         let mut children: [[Lattice; 4]; 4];
         let count = parent.corners().len();
@@ -86,45 +86,41 @@ impl Mesh {
                 ..parent
             };
             for (slot, corner) in child.corners.iter_mut().zip(corners) {
-                *slot = self.vertex(parent.patch, *corner);
+                *slot = self.vertex_or_new(parent.patch, *corner);
             }
-            child.centre = self.vertex(parent.patch, centre_of(corners));
+            child.centre = self.vertex_or_new(parent.patch, centre_of(corners));
             self.elements.push(child);
         }
-        self.elements[element as usize].children = first;
+        self.elements.change(
+            element,
+            Element {
+                children: first,
+                ..parent
+            },
+        );
         first
     }
 
     /// The vertex at a lattice point; if there is none it is made, for the next element.
-    fn vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
+    fn vertex_or_new(&mut self, patch: u32, lattice: Lattice) -> u32 {
         if let Some(vertex) = self.vertex_at(patch, lattice) {
             return vertex;
         }
-        if !self.is_indexed(patch) {
-            let first = self.patches.first_vertices(patch as usize);
-            first.for_each(|v| self.index(v));
-        }
-        let vertex = self.make_vertex(patch, lattice);
-        self.later.entry(patch).or_default().push(vertex);
-        self.index(vertex);
-        vertex
-    }
-
-    /// A new vertex, for the next element.
-    pub(super) fn make_vertex(&mut self, patch: u32, lattice: Lattice) -> u32 {
-        self.vertices.push(Vertex {
+        let vertex = self.vertices.push(Vertex {
             patch,
             lattice,
             maker: self.elements.len() as u32,
         });
-        self.vertices.len() as u32 - 1
+        self.later.entry(patch).or_default().push(vertex);
+        self.at.insert((patch, lattice), vertex);
+        vertex
     }
 
     /// A position on the border of a patch, moved towards the centre of one of its elements.
     pub(super) fn inwards(&self, patch: &Patch, element: u32, position: DVec3) -> DVec3 {
-        let of = &self.elements[element as usize];
-        let (corners, count) = self.corner_positions(patch, of);
-        let centre = patch.position(self.vertices[of.centre as usize].lattice);
+        let of = self.element(element);
+        let (corners, count) = self.corner_positions(patch, &of);
+        let centre = patch.position(self.lattice_of(of.centre));
         let depth = |i: usize| {
             let [a, b] = [i, (i + 1) % count].map(|i| corners[i]);
             (b - a).normalize_or_zero().cross(centre - a).length()
@@ -143,7 +139,7 @@ impl Mesh {
     fn corner_positions(&self, patch: &Patch, of: &Element) -> ([DVec3; 4], usize) {
         let mut corners = [DVec3::ZERO; 4];
         for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
-            *corner = patch.position(self.vertices[*vertex as usize].lattice);
+            *corner = patch.position(self.lattice_of(*vertex));
         }
         (corners, of.corners().len())
     }
@@ -151,8 +147,8 @@ impl Mesh {
     /// The leaves that must be split so that neighbours differ by at most one level: those with a vertex at a quarter of a side.
     pub fn unbalanced(&self) -> Vec<u32> {
         let is_unbalanced = |e: &u32| {
-            let element = &self.elements[*e as usize];
-            element.is_leaf() && self.has_quarter_vertex(element)
+            let element = self.element(*e);
+            element.is_leaf() && self.has_quarter_vertex(&element)
         };
         let elements = self.elements_on(&self.touched()).into_par_iter();
         let unbalanced = elements.with_min_len(1024).filter(is_unbalanced);
@@ -186,10 +182,7 @@ impl Mesh {
 
     fn has_quarter_vertex(&self, element: &Element) -> bool {
         element.sides().any(|(_, a, b)| {
-            let (a, b) = (
-                self.vertices[a as usize].lattice,
-                self.vertices[b as usize].lattice,
-            );
+            let [a, b] = [a, b].map(|v| self.lattice_of(v));
             let middle = a.midpoint(b);
             self.vertex_at(element.patch, middle).is_some()
                 && [a, b].iter().any(|end| {
@@ -203,13 +196,13 @@ impl Mesh {
     fn find_hanging(&mut self, patches: &[u32]) {
         let elements = self.elements_on(patches).into_par_iter();
         let other = |e: u32| {
-            let of = &self.elements[e as usize];
-            let hanging = self.hanging(of);
-            (hanging != of.hanging).then_some((e, hanging))
+            let of = self.element(e);
+            let hanging = self.hanging(&of);
+            (hanging != of.hanging).then_some((e, Element { hanging, ..of }))
         };
         let others: Vec<_> = elements.with_min_len(1024).filter_map(other).collect();
-        for (element, hanging) in others {
-            self.elements[element as usize].hanging = hanging;
+        for (number, element) in others {
+            self.elements.change(number, element);
         }
     }
 
@@ -217,7 +210,7 @@ impl Mesh {
     fn hanging(&self, of: &Element) -> [u32; 4] {
         let mut hanging = [NONE; 4];
         for (side, a, b) in of.sides().filter(|_| of.is_leaf()) {
-            let [a, b] = [a, b].map(|v| self.vertices[v as usize].lattice);
+            let [a, b] = [a, b].map(|v| self.lattice_of(v));
             hanging[side] = self.vertex_at(of.patch, a.midpoint(b)).unwrap_or(NONE);
         }
         hanging
@@ -233,7 +226,7 @@ impl Mesh {
         for (vertex, now) in (first as usize..self.vertices.len()).zip(buried) {
             if self.buried[vertex] != now {
                 self.buried[vertex] = now;
-                self.touch(self.vertices[vertex].patch);
+                self.touch(self.vertices.patch_of(vertex as u32));
             }
         }
         self.plan_continuation();

@@ -2,7 +2,7 @@
 
 use super::patches::{Known, MOST_ALONG};
 use super::restore::check;
-use super::{Element, Lattice, Mesh, MeshLimits, NONE, Patch, Patches, Vertex};
+use super::{Element, Lattice, Mesh, MeshLimits, Patch, Patches};
 use crate::geometry::Frame;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
@@ -40,25 +40,27 @@ struct StoredPatch {
 }
 
 #[derive(Serialize, Deserialize)]
-struct StoredVertex {
-    patch: u32,
-    lattice: Lattice,
+pub(super) struct StoredVertex {
+    pub(super) patch: u32,
+    pub(super) lattice: Lattice,
     point: DVec3,
 }
 
 impl Serialize for Mesh {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let patch = |(number, of): (u32, Patch)| StoredPatch::new(of, self.vertices_of(number));
-        let vertex = |(number, of): (u32, &Vertex)| StoredVertex {
-            patch: of.patch,
-            lattice: of.lattice,
+        let element = |number: u32| self.element(number);
+        let vertex = |number: u32| StoredVertex {
+            patch: self.vertices.patch_of(number),
+            lattice: self.lattice_of(number),
             point: self.point(number),
         };
+        let (elements, vertices) = (self.elements.len() as u32, self.vertices.len() as u32);
         let mut mesh = serializer.serialize_struct("Mesh", 6)?;
         mesh.serialize_field("frame", &self.frame)?;
         mesh.serialize_field("patches", &List((0..).zip(self.patches.iter()).map(patch)))?;
-        mesh.serialize_field("elements", &self.elements)?;
-        mesh.serialize_field("vertices", &List((0..).zip(&self.vertices).map(vertex)))?;
+        mesh.serialize_field("elements", &List((0..elements).map(element)))?;
+        mesh.serialize_field("vertices", &List((0..vertices).map(vertex)))?;
         mesh.serialize_field("buried", &self.buried)?;
         mesh.serialize_field("limits", &self.limits)?;
         mesh.end()
@@ -86,28 +88,21 @@ impl StoredMesh {
         for (number, of) in (0..).zip(self.patches) {
             let within = |v: &u32| (*v as usize) < self.vertices.len();
             check(of.vertices.iter().all(within), "a vertex of a patch")?;
-            let (patch, vertices) = of.patch(&self.elements)?;
+            let (patch, vertices) = of.patch(&patches, self.elements.len())?;
             let first = patch.first_vertices().len();
             if vertices.len() > first {
                 later.insert(number, vertices[first..].to_vec());
             }
             patches.push(&patch, &mut known);
         }
-        let vertex = |of: StoredVertex| Vertex {
-            patch: of.patch,
-            lattice: of.lattice,
-            maker: NONE,
-        };
         let mut mesh = Mesh {
             patches,
-            elements: self.elements,
-            vertices: self.vertices.into_iter().map(vertex).collect(),
-            buried: self.buried,
             later,
             clearances: clearances.iter().copied().collect(),
             ..Mesh::empty(self.frame, self.limits)
         };
-        mesh.restore()?;
+        mesh.make_grids();
+        mesh.restore(&self.elements, &self.vertices, &self.buried)?;
         Ok(mesh)
     }
 }
@@ -133,8 +128,8 @@ impl StoredPatch {
         }
     }
 
-    /// The patch and its vertices, if its parts fit each other and those of the `elements` that it begins with.
-    fn patch(self, elements: &[Element]) -> Result<(Patch, Vec<u32>), String> {
+    /// The patch and its vertices, if its parts fit each other and those `before` it, and there are as many elements as it needs.
+    fn patch(self, before: &Patches, elements: usize) -> Result<(Patch, Vec<u32>), String> {
         check(matches!(self.corner_count, 3 | 4), "a patch")?;
         let corners = &self.corners[..usize::from(self.corner_count)];
         let patch = Patch {
@@ -154,17 +149,17 @@ impl StoredPatch {
             && patch.reflectance.to_array().into_iter().all(within)
             && patch.exitance.is_finite();
         check(is_sound, "a patch")?;
+        let (element, vertex) = before.first_after();
         let Range { start, end } = patch.roots;
-        check(
-            start <= end && end as usize <= elements.len(),
-            "a root element",
-        )?;
+        let is_known = start == element && end > start && end as usize <= elements;
+        check(is_known, "a root element")?;
+        let is_side = |count: u32| count.is_power_of_two() && count <= MOST_ALONG;
         let (columns, rows) = patch.grid;
-        let most = columns.max(rows);
-        let is_full = most <= MOST_ALONG && columns * rows == end - start && end > start;
-        check(is_full, "a grid")?;
+        let is_full = is_side(columns) && is_side(rows) && columns * rows == end - start;
+        let is_fit = !patch.is_triangle() || columns * rows == 1;
+        check(is_full && is_fit, "a grid")?;
         let first = patch.first_vertices();
-        let is_known = self.vertices.starts_with(&Vec::from_iter(first));
+        let is_known = first.start == vertex && self.vertices.starts_with(&Vec::from_iter(first));
         check(is_known, "a vertex of a patch")?;
         Ok((patch, self.vertices))
     }

@@ -87,7 +87,7 @@ impl Mesh {
         }
         for patch in self.patches.iter().filter(|patch| self.is_small(patch)) {
             let root = patch.roots.start;
-            weld.site_of[self.elements[root as usize].centre as usize] = FOLLOWS;
+            weld.site_of[self.element(root).centre as usize] = FOLLOWS;
             weld.followed.push(root);
         }
         self.weld = weld;
@@ -111,14 +111,14 @@ impl Mesh {
         if let Some(site) = self.site(vertex) {
             return (site.point, site.normal.as_dvec3());
         }
-        let of = &self.vertices[vertex as usize];
+        let of = self.vertex(vertex);
         let patch = self.patch(of.patch);
         let normal = if self.weld.sites.is_empty() {
             patch.normal
         } else {
             self.interpolated_normal(&patch, of.patch, of.lattice)
         };
-        (self.point_on(&patch, of), normal)
+        (self.point_on(&patch, &of), normal)
     }
 
     fn site(&self, vertex: u32) -> Option<&Site> {
@@ -134,7 +134,7 @@ impl Mesh {
             }
         }
         for element in &self.weld.followed {
-            let of = &self.elements[*element as usize];
+            let of = self.element(*element);
             let corners = of.corners();
             let around = [0, 1, 2, corners.len() - 1].map(|i| values[corners[i] as usize]);
             values[of.centre as usize] = mean(&around[..corners.len()]);
@@ -177,7 +177,7 @@ impl Mesh {
     /// The vertex in a corner of a patch.
     fn corner_vertex(&self, patch: &Patch, number: u32, corner: usize) -> u32 {
         if patch.roots.len() == 1 {
-            return self.elements[patch.roots.start as usize].corners[corner];
+            return self.element(patch.roots.start).corners[corner];
         }
         let (u, v) = [(0, 0), (UNIT, 0), (UNIT, UNIT), (0, UNIT)][corner];
         let vertex = self.vertex_at(number, Lattice::new(u, v));
@@ -196,7 +196,7 @@ impl Mesh {
     /// The site of corners that are joined, if they can receive as one.
     fn settled(&self, site: &[(u32, u32)]) -> Option<Site> {
         let vertices = || site.iter().map(|(_, vertex)| *vertex);
-        let patch_of = |v: u32| self.patch(self.vertices[v as usize].patch);
+        let patch_of = |v: u32| self.patch(self.vertices.patch_of(v));
         let position = self.position(site[0].1);
         let angled = |v: u32| patch_of(v).normal * angle_at(&patch_of(v), position);
         let normal = vertices().map(angled).sum::<DVec3>().normalize_or_zero();

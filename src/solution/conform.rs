@@ -50,7 +50,7 @@ impl Borders {
     fn new(mesh: &Mesh) -> Self {
         let tolerance = WELD * mesh.frame.extent();
         let on_border = |v: &u32| {
-            let vertex = &mesh.vertices[*v as usize];
+            let vertex = mesh.vertex(*v);
             mesh.patch(vertex.patch).on_border(vertex.lattice)
         };
         let vertices: Vec<u32> = (0..mesh.vertices.len() as u32).filter(on_border).collect();
@@ -129,7 +129,7 @@ enum Key {
 
 impl Builder<'_> {
     fn add(&mut self, leaf: u32) {
-        let of = self.mesh.elements[leaf as usize];
+        let of = self.mesh.element(leaf);
         let patch = self.mesh.patch(of.patch);
         let centre = self.vertex(of.centre);
         for (side, a, b) in of.sides() {
@@ -139,10 +139,8 @@ impl Builder<'_> {
                 &[a, of.hanging[side], b]
             };
             for pair in chain.windows(2) {
-                let border = patch.common_side(
-                    self.mesh.vertices[pair[0] as usize].lattice,
-                    self.mesh.vertices[pair[1] as usize].lattice,
-                );
+                let [from, to] = [pair[0], pair[1]].map(|v| self.mesh.lattice_of(v));
+                let border = patch.common_side(from, to);
                 let stops = if border.is_some() {
                     self.stops(pair[0], pair[1])
                 } else {
@@ -162,7 +160,7 @@ impl Builder<'_> {
 
     /// The lit vertices along a piece of the border: its ends, and between them what other patches have there.
     fn stops(&mut self, a: u32, b: u32) -> Vec<u32> {
-        let patch = self.mesh.vertices[a as usize].patch;
+        let patch = self.mesh.vertices.patch_of(a);
         let (first, last) = (self.vertex(a), self.vertex(b));
         let mut stops = vec![first];
         for (place, position) in self
@@ -186,7 +184,7 @@ impl Builder<'_> {
     }
 
     fn vertex(&mut self, vertex: u32) -> u32 {
-        let patch = self.mesh.vertices[vertex as usize].patch;
+        let patch = self.mesh.vertices.patch_of(vertex);
         let welded = self.borders.of_vertex.get(&vertex);
         let key = welded.map_or(Key::Inner(vertex), |position| Key::Border {
             patch,

@@ -224,7 +224,7 @@ fn places(mesh: &Mesh, count: usize) -> Vec<Place> {
                 .zip(weights)
                 .map(|(v, w)| mesh.position(*v) * w)
                 .sum();
-            let patch = mesh.elements[leaf as usize].patch;
+            let patch = mesh.elements.patch_of(leaf);
             places.push(Place { leaf, patch, point });
         }
     }

@@ -10,7 +10,7 @@ use super::refine::{Range, scale, unit};
 use super::shoot::{Beam, Shooter, shoot_at};
 use crate::form_factor::Gather;
 use crate::geometry::polygon;
-use crate::mesh::Mesh;
+use crate::mesh::{Element, Mesh};
 use rayon::prelude::*;
 
 /// A shot is smooth on an element if at its centre it differs from the mean of the corners by no more than this times ε_r …
@@ -75,14 +75,14 @@ impl<'a> Descent<'a> {
         let mut level = roots;
         while !level.is_empty() {
             self.evaluate(&level);
-            let is_split = |e: &u32| !self.mesh.elements[*e as usize].is_leaf();
+            let is_split = |e: &u32| !self.mesh.elements.is_leaf(*e);
             let (rough, rest): (Vec<u32>, Vec<u32>) = level
                 .into_par_iter()
                 .with_min_len(64)
                 .filter(is_split)
                 .partition(|e| self.is_rough(*e));
             smooth.extend(rest);
-            let parts = |e: u32| self.mesh.elements[e as usize].parts();
+            let parts = |e: u32| self.mesh.element(e).parts();
             level = rough.into_iter().flat_map(parts).collect();
         }
         let followers: Vec<Vec<(u32, Gather)>> = smooth
@@ -90,7 +90,8 @@ impl<'a> Descent<'a> {
             .with_min_len(16)
             .map(|element| {
                 let mut followers = Vec::new();
-                self.follow(*element, self.fan(*element), &mut followers);
+                let whole = self.mesh.element(*element);
+                self.follow(&whole, self.fan(*element), &mut followers);
                 followers
             })
             .collect();
@@ -102,7 +103,7 @@ impl<'a> Descent<'a> {
 
     /// What has arrived at the vertices of an element.
     fn fan(&self, element: u32) -> Fan {
-        let of = &self.mesh.elements[element as usize];
+        let of = self.mesh.element(element);
         let mut corners = [Gather::default(); 4];
         for (corner, vertex) in corners.iter_mut().zip(of.corners()) {
             *corner = self.at(*vertex);
@@ -119,7 +120,7 @@ impl<'a> Descent<'a> {
     fn evaluate(&mut self, elements: &[u32]) {
         let mut fresh = Vec::new();
         for element in elements {
-            for vertex in self.mesh.elements[*element as usize].vertices() {
+            for vertex in self.mesh.element(*element).vertices() {
                 if !std::mem::replace(&mut self.is_known[vertex as usize], true) {
                     fresh.push(vertex);
                 }
@@ -129,7 +130,7 @@ impl<'a> Descent<'a> {
     }
 
     fn is_rough(&self, element: u32) -> bool {
-        let of = &self.mesh.elements[element as usize];
+        let of = self.mesh.element(element);
         if self.is_near(element) || of.vertices().any(|v| self.mesh.buried[v as usize]) {
             return true;
         }
@@ -159,7 +160,7 @@ impl<'a> Descent<'a> {
         let Shooter::Patch(source) = self.beam.shooter else {
             return false;
         };
-        let centre = self.mesh.elements[element as usize].centre;
+        let centre = self.mesh.element(element).centre;
         let centre = self.mesh.position(centre);
         let distance = polygon::distance(centre, source.corners(), source.normal());
         distance < NEAR * self.mesh.longest_side(element)
@@ -167,8 +168,7 @@ impl<'a> Descent<'a> {
 
     /// Lists the vertices of an element's parts with what its fan has there: a corner of a part is a corner of the whole, its centre, or
     /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's. No leaf is asked.
-    fn follow(&self, element: u32, fan: Fan, followers: &mut Vec<(u32, Gather)>) {
-        let whole = &self.mesh.elements[element as usize];
+    fn follow(&self, whole: &Element, fan: Fan, followers: &mut Vec<(u32, Gather)>) {
         let mut halfway = |vertex: u32, ends: [Gather; 2]| {
             if self.is_known[vertex as usize] {
                 return self.arrived.at(vertex);
@@ -180,16 +180,16 @@ impl<'a> Descent<'a> {
         let count = whole.corners().len();
         let after = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
-        let part = |i: usize| &self.mesh.elements[whole.children as usize + i];
+        let parts = self.mesh.elements.children(whole);
         let mut middles = [Gather::default(); 4];
         // A triangle's fourth part has the whole's own centre.
         let mut centres = [fan.centre; 4];
         for i in 0..count {
             let side = [fan.corners[i], fan.corners[after(i)]];
-            middles[i] = halfway(part(i).corners[after(i)], side);
-            centres[i] = halfway(part(i).centre, [fan.corners[i], fan.centre]);
+            middles[i] = halfway(parts[i].corners[after(i)], side);
+            centres[i] = halfway(parts[i].centre, [fan.corners[i], fan.centre]);
         }
-        for i in (0..4).filter(|i| !part(*i).is_leaf()) {
+        for i in (0..4).filter(|i| !parts[*i].is_leaf()) {
             let mut corners = [fan.centre; 4];
             if i < count {
                 corners[i] = fan.corners[i];
@@ -199,11 +199,7 @@ impl<'a> Descent<'a> {
                 corners[..3].copy_from_slice(&[middles[1], middles[2], middles[0]]);
             }
             let centre = centres[i];
-            self.follow(
-                whole.children + i as u32,
-                Fan { corners, centre },
-                followers,
-            );
+            self.follow(&parts[i], Fan { corners, centre }, followers);
         }
     }
 }

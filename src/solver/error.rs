@@ -28,7 +28,7 @@ pub(super) struct Squares {
 
 impl Squares {
     pub(super) fn of(mesh: &Mesh, light: &Light, leaf: u32) -> Self {
-        let element = &mesh.elements[leaf as usize];
+        let element = mesh.element(leaf);
         let at = |v: u32| light.irradiance[v as usize].as_dvec3();
         let corners = element.corners();
         let mean = corners.iter().map(|v| at(*v)).sum::<Power>() / corners.len() as f64;

@@ -70,7 +70,7 @@ impl Groups {
             .par_iter()
             .map(|vertex| {
                 let (point, normal) = mesh.receiver(*vertex);
-                let back = mesh.patch(mesh.vertices[*vertex as usize].patch).back;
+                let back = mesh.patch(mesh.vertices.patch_of(*vertex)).back;
                 let cell = (point / side).floor().as_i64vec3().to_array();
                 let member = Member::new(*vertex, point, normal, side);
                 ((cell, facing(normal), back), member)

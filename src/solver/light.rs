@@ -69,7 +69,7 @@ impl Light {
 
     /// Unshot radiosity ΔB of one sign of a patch at one of its vertices, ≥ 0.
     pub fn unshot_radiosity(&self, mesh: &Mesh, vertex: u32, sign: Sign) -> Spectrum {
-        let patch = mesh.vertices[vertex as usize].patch as usize;
+        let patch = mesh.vertices.patch_of(vertex) as usize;
         sign.part(self.exitance_unshot[patch])
             + mesh.patches.reflectance(patch) * sign.part(self.unshot[vertex as usize])
     }

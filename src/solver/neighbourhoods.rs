@@ -77,7 +77,7 @@ impl Neighbourhoods {
 fn nearby(mesh: &Mesh, visibility: &dyn Visibility) -> Lists {
     let side = side(mesh);
     let sheets = sheets(mesh, visibility, side / SLICES as f64);
-    let sheet = |v: u32| sheets[mesh.vertices[v as usize].patch as usize];
+    let sheet = |v: u32| sheets[mesh.vertices.patch_of(v) as usize];
     let closeness = closeness(mesh, visibility, side / SLICES as f64);
     let close = |v: u32| closeness[v as usize];
     let sees = |a: u32, b: u32| {
@@ -89,7 +89,7 @@ fn nearby(mesh: &Mesh, visibility: &dyn Visibility) -> Lists {
     let (mut alike, mut keyed) = (Vec::new(), Vec::new());
     // One way of facing after the other: with their keys, all vertices at once would take as much memory as the light on them.
     for way in 0..WAYS {
-        let faces = |v: &u32| ways[mesh.vertices[*v as usize].patch as usize] == way;
+        let faces = |v: &u32| ways[mesh.vertices.patch_of(*v) as usize] == way;
         let open = (0..mesh.vertices.len() as u32).filter(|v| !mesh.buried[*v as usize]);
         alike.clear();
         alike.extend(open.filter(faces));
@@ -117,7 +117,7 @@ fn nearby(mesh: &Mesh, visibility: &dyn Visibility) -> Lists {
 /// Those that reflect much of the direct light in smaller ones: on a few of them depends how bright all is.
 fn divided(lists: &Lists, mesh: &Mesh, direct: &[Spectrum]) -> Lists {
     let reflected = |vertex: u32| {
-        let patch = mesh.vertices[vertex as usize].patch as usize;
+        let patch = mesh.vertices.patch_of(vertex) as usize;
         let reflectance = mesh.patches.reflectance(patch);
         f64::from((direct[vertex as usize] * reflectance).element_sum()) * weight(mesh, vertex)
     };
@@ -175,7 +175,7 @@ impl Lists {
 /// The cube that a vertex is in, and the slice of it across the way that its patch faces: the inside of a thin box has nothing of the light
 /// outside. Last, how close something is in front.
 fn key(mesh: &Mesh, vertex: u32, close: Closeness, side: f64) -> u64 {
-    let patch = mesh.patch(mesh.vertices[vertex as usize].patch);
+    let patch = mesh.patch(mesh.vertices.patch_of(vertex));
     let face = facing(patch.normal);
     let place = mesh.point(vertex) / side;
     let [x, y, z] = place.floor().as_i64vec3().to_array();

@@ -308,7 +308,7 @@ impl Options {
     /// of the others may be a few times smaller, where the tolerance that grows as they shrink still asks for it.
     pub(super) fn may_split(&self, mesh: &Mesh, element: u32) -> bool {
         let finest = FINEST * self.limits.min_size;
-        let is_small = || mesh.is_small(&mesh.patch(mesh.elements[element as usize].patch));
+        let is_small = || mesh.is_small(&mesh.patch(mesh.elements.patch_of(element)));
         mesh.may_split(element)
             || self.clusters(mesh) && mesh.may_split_above(element, finest) && !is_small()
     }

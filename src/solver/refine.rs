@@ -33,9 +33,8 @@ impl Refinement<'_> {
     /// Tests `candidates` (leaves), splits those that fail and computes the shot at the new vertices; returns the new
     /// leaves, which are to be tested next. Empty when all passed.
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
-        let may_split = |e: &u32| {
-            self.mesh.elements[*e as usize].is_leaf() && self.options.may_split(self.mesh, *e)
-        };
+        let may_split =
+            |e: &u32| self.mesh.elements.is_leaf(*e) && self.options.may_split(self.mesh, *e);
         let fails = |e: &u32| {
             let unit = self.unit(*e);
             self.nodal_difference(*e, unit) || self.residual(*e, unit)
@@ -74,8 +73,8 @@ impl Refinement<'_> {
 
     /// Test 1: corners differ by more than ε_d.
     fn nodal_difference(&self, element: u32, unit: f64) -> bool {
-        let corners = self.mesh.elements[element as usize].corners();
-        let values = corners.iter().map(|v| self.tested(*v));
+        let of = self.mesh.element(element);
+        let values = of.corners().iter().map(|v| self.tested(*v));
         let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
         let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
         self.size(element, high - low) > self.options.epsilon_d * unit
@@ -84,7 +83,7 @@ impl Refinement<'_> {
     /// Test 2: at the centre, computed and interpolated light differ by more than ε_r. Both are sums over all shots since
     /// the element was made (before that the centre was interpolated), so small lights add up.
     fn residual(&self, element: u32, unit: f64) -> bool {
-        let of = &self.mesh.elements[element as usize];
+        let of = self.mesh.element(element);
         let residual = of.residual(|v| self.tested(v));
         self.size(element, residual) > self.options.epsilon_r * unit
     }
@@ -99,7 +98,7 @@ impl Refinement<'_> {
 
     /// A difference of irradiances on an element in the quantity that is tested, largest channel.
     fn size(&self, element: u32, difference: Spectrum) -> f64 {
-        let of = &self.mesh.elements[element as usize];
+        let of = self.mesh.element(element);
         let weight = match self.options.quantity {
             Quantity::Irradiance => Spectrum::ONE,
             Quantity::Radiosity => self.mesh.patch(of.patch).reflectance,
@@ -118,7 +117,7 @@ impl Refinement<'_> {
     /// Test 3: visibility indices at corners, centre and middles of sides differ by ε_v or more.
     fn visibility_differs(&mut self, elements: &[u32]) -> Vec<u32> {
         let matters = |e: &u32| {
-            let of = &self.mesh.elements[*e as usize];
+            let of = self.mesh.element(*e);
             let threshold = self.options.visibility_significance * self.scale(*e);
             let known = || of.vertices().map(|v| self.arrived.at(v));
             let matters = known().any(|g| f64::from(g.unoccluded.max_element()) > threshold);
@@ -144,7 +143,7 @@ impl Refinement<'_> {
         failed.extend(
             open.iter()
                 .filter(|(element, range)| {
-                    let of = &self.mesh.elements[*element as usize];
+                    let of = self.mesh.element(*element);
                     let all = of.sides().fold(*range, |range, (side, a, b)| {
                         let known = match of.hanging[side] {
                             NONE => middles
@@ -183,9 +182,8 @@ impl Refinement<'_> {
     }
 
     fn middle(&self, a: u32, b: u32) -> Lattice {
-        self.mesh.vertices[a as usize]
-            .lattice
-            .midpoint(self.mesh.vertices[b as usize].lattice)
+        let [a, b] = [a, b].map(|v| self.mesh.lattice_of(v));
+        a.midpoint(b)
     }
 
     /// Visibility indices in the middles of the sides, each computed once for both neighbours.
@@ -194,7 +192,7 @@ impl Refinement<'_> {
         let mut points = Vec::new();
         let mut seen = FxHashMap::default();
         for (element, _) in elements {
-            let of = self.mesh.elements[*element as usize];
+            let of = self.mesh.element(*element);
             for (side, a, b) in of.sides() {
                 let key = (of.patch, self.middle(a, b));
                 if of.hanging[side] == NONE && seen.insert(key, ()).is_none() {
@@ -255,7 +253,7 @@ impl Refinement<'_> {
             self.light.irradiance[vertex] += *arrived;
             self.light.unshot[vertex] += *arrived;
         }
-        fresh.retain(|e| self.mesh.elements[*e as usize].is_leaf());
+        fresh.retain(|e| self.mesh.elements.is_leaf(*e));
         fresh
     }
 
@@ -278,7 +276,7 @@ impl Refinement<'_> {
             self.light.irradiance[vertex as usize] = irradiance;
             self.light.unshot[vertex as usize] = unshot;
         }
-        debug_assert!(self.mesh.elements[parent as usize].children == first_child);
+        debug_assert!(self.mesh.element(parent).children == first_child);
     }
 }
 
@@ -296,8 +294,10 @@ pub(super) fn unit(
 
 /// The irradiance that relative thresholds are multiples of on an element.
 pub(super) fn scale(mesh: &Mesh, light: &Light, beam: &Beam, element: u32) -> f64 {
-    let vertices = mesh.elements[element as usize].vertices();
-    let local = vertices.map(|v| light.irradiance[v as usize].max_element());
+    let of = mesh.element(element);
+    let local = of
+        .vertices()
+        .map(|v| light.irradiance[v as usize].max_element());
     let local = local.fold(0.0, f32::max);
     beam.sampler.thresholds.scale.at(f64::from(local))
 }

@@ -101,7 +101,7 @@ impl Solver<'_> {
         let (mesh, light) = (&self.mesh, &self.light);
         let (mut arrived, mut sent) = (self.course.lost.all, self.emitted());
         let at = |vertex: usize| {
-            let patch = mesh.vertices[vertex].patch as usize;
+            let patch = mesh.vertices.patch_of(vertex as u32) as usize;
             let (irradiance, unshot) = (light.irradiance[vertex], light.unshot[vertex]);
             let reflected = mesh.patches.reflectance(patch) * (irradiance - unshot);
             [irradiance, reflected].map(|of| of.as_dvec3() * mesh.weights[vertex])

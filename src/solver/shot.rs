@@ -35,7 +35,7 @@ impl<'a> Solver<'a> {
         self.course.rays += rays;
         self.light.receive(arrived.irradiance.par_iter().copied());
         let elements = self.mesh.leaves();
-        let patch_of = |e: u32| self.mesh.elements[e as usize].patch as usize;
+        let patch_of = |e: u32| self.mesh.element(e).patch as usize;
         let candidates = elements.filter(|e| reached[patch_of(*e)]).collect();
         let (feelers, rays) = feelers(&self.mesh, &self.light, &self.behind, beam, &reached);
         self.course.rays += rays;
@@ -153,7 +153,7 @@ impl<'a> Solver<'a> {
     /// evaluated at all of them, anything else as far down as it is rough.
     pub(super) fn arrivals(&self, beam: Beam, shooter: usize, reached: &[bool]) -> (Arrived, u64) {
         let mesh = &self.mesh;
-        let is_reached = |e: &u32| reached[mesh.elements[*e as usize].patch as usize];
+        let is_reached = |e: &u32| reached[mesh.elements.patch_of(*e) as usize];
         let elements: Vec<u32> = if mesh.patches.at(shooter).exitance != Spectrum::ZERO {
             mesh.leaves().filter(is_reached).collect()
         } else {
@@ -200,9 +200,9 @@ impl<'a> Solver<'a> {
     /// Of each patch, whether all its vertices are open.
     fn patches_without_buried(&self) -> Vec<bool> {
         let mut is_whole = vec![true; self.mesh.patches.len()];
-        let buried = self.mesh.buried.iter().zip(&self.mesh.vertices);
-        for (_, vertex) in buried.filter(|(is_buried, _)| **is_buried) {
-            is_whole[vertex.patch as usize] = false;
+        let buried = self.mesh.buried.iter().zip(self.mesh.vertices.patches());
+        for (_, patch) in buried.filter(|(is_buried, _)| **is_buried) {
+            is_whole[patch as usize] = false;
         }
         is_whole
     }

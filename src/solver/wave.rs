@@ -256,7 +256,7 @@ impl<'a> Solver<'a> {
     /// A wave that has arrived at the vertices that there are; if it `meshes`, all elements are to be tested.
     pub(super) fn arrived(&mut self, wave: Wave, sign: Sign, meshes: bool) -> Shot {
         let may_split = |e: &u32| {
-            let is_leaf = self.mesh.elements[*e as usize].is_leaf();
+            let is_leaf = self.mesh.elements.is_leaf(*e);
             meshes && is_leaf && self.options.may_split(&self.mesh, *e)
         };
         let elements = (0..self.mesh.elements.len() as u32).into_par_iter();

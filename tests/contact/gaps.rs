@@ -232,7 +232,7 @@ fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
         .scene(true);
     let mesh = pieces_down_to(&scene, SMALLEST).mesh;
     let on_floor = (0..mesh.vertices.len() as u32)
-        .filter(|v| mesh.patch(mesh.vertices[*v as usize].patch).surface == 0);
+        .filter(|v| mesh.patch(mesh.vertices.patch_of(*v)).surface == 0);
     let mut beside = 0;
     for vertex in on_floor {
         let [at, from] = [mesh.position(vertex), mesh.point(vertex)].map(|p| mesh.frame.leave(p));

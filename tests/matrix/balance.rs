@@ -185,7 +185,7 @@ fn the_matrix_and_the_progressive_solver_agree() {
             .filter(|(row, _)| row.label.starts_with(&of));
         let by_matrix: f64 = of_zones.map(|(row, b)| b.irradiance.x * row.area).sum();
         let on_it =
-            |vertex: usize| mesh.patch(mesh.vertices[vertex].patch).polygon as usize == polygon;
+            |v: usize| mesh.patch(mesh.vertices.patch_of(v as u32)).polygon as usize == polygon;
         let by_solver: f64 = (0..mesh.vertices.len())
             .filter(|v| on_it(*v))
             .map(|v| mesh.weights[v] * f64::from(solution.light.irradiance[v].x))

@@ -124,7 +124,7 @@ fn the_inside_of_a_thin_box_stays_dark() {
     let mesh = &solution.mesh;
     let mut outside: f32 = 0.0;
     for (number, irradiance) in (0..).zip(&solution.light.irradiance) {
-        let patch = mesh.patch(mesh.vertices[number as usize].patch);
+        let patch = mesh.patch(mesh.vertices.patch_of(number));
         if patch.surface as usize >= first && patch.back {
             assert_eq!(
                 irradiance.x,
@@ -169,8 +169,8 @@ fn no_light_comes_past_a_ceiling_along_the_walls() {
 fn by_place(solution: &Solution) -> BTreeMap<([u64; 3], bool), Vec<f32>> {
     let mesh = &solution.mesh;
     let mut found: BTreeMap<_, Vec<f32>> = BTreeMap::new();
-    for (vertex, of) in mesh.vertices.iter().enumerate() {
-        let patch = mesh.patch(of.patch);
+    for (vertex, patch) in mesh.vertices.patches().enumerate() {
+        let patch = mesh.patch(patch);
         let corner = patch
             .corners()
             .iter()

@@ -4,7 +4,7 @@ use super::common::ENGINE;
 use super::common::reference::{Deviation, Sample, table};
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
-use radiosity::mesh::{Lattice, Vertex};
+use radiosity::mesh::{Element, Lattice, Vertex};
 use radiosity::radiometry::Spectrum;
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
@@ -293,7 +293,6 @@ fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
         let error = Solution::decode(&file(&spoilt)).expect_err(words);
         assert!(error.contains(words), "{error}");
     };
-    refused(&|s| s.mesh.elements[1].children = 0, "the children");
     refused(&|s| s.mesh.buried.truncate(1), "buried");
     refused(&|s| s.light.irradiance.truncate(1), "does not fit the mesh");
     refused(&|s| s.light.exitance_unshot.truncate(1), "exitance");
@@ -339,15 +338,28 @@ fn a_file_whose_mesh_is_not_sound_is_refused() {
     let known = encoded((of.grid, &vertices));
     vertices[0] = u32::MAX;
     refused(known, encoded((of.grid, &vertices)), "a vertex of a patch");
-    let Vertex { patch, lattice, .. } = whole.mesh.vertices[3];
+    let Vertex { patch, lattice, .. } = whole.mesh.vertex(3);
     let vertex = |patch, lattice| encoded((patch, lattice, whole.mesh.point(3)));
     let known = vertex(patch, lattice);
     refused(known.clone(), vertex(1 << 20, lattice), "a vertex");
     refused(known, vertex(patch, Lattice::new(u32::MAX, 0)), "a vertex");
-    let mut element = whole.mesh.elements[0];
-    let known = encoded(element);
-    element.corners[0] = 1 << 30;
-    refused(known, encoded(element), "a corner");
+    let last = whole.mesh.elements.len() as u32 - 1;
+    let known = encoded(whole.mesh.element(last));
+    let element = |spoil: &dyn Fn(&mut Element)| {
+        let mut element = whole.mesh.element(last);
+        spoil(&mut element);
+        encoded(element)
+    };
+    let far = element(&|of| of.corners[0] = 1 << 30);
+    refused(known.clone(), far, "a corner");
+    let circular = element(&|of| of.children = 0);
+    refused(known, circular, "the children");
+    let root = whole.mesh.element(0);
+    let other = Element {
+        centre: root.corners[0],
+        ..root
+    };
+    refused(encoded(root), encoded(other), "an element of a grid");
     let clearances = whole.mesh.clearances();
     let first = |patch, clearance| {
         let mut clearances = clearances.clone();
