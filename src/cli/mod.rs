@@ -29,7 +29,7 @@ mod window;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use error::CliError;
-pub use memory::peak_memory;
+pub use memory::{load_scene, peak_memory};
 use std::ffi::OsString;
 use std::process::ExitCode;
 

@@ -3,6 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
+use super::memory::hold_less;
 use super::progress::catch_interrupts;
 use super::session::{CHECKPOINT, Session};
 use super::solve::{How, SOLUTION, engine_of, prepare, warn, warn_of_another_engine};
@@ -33,6 +34,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
     let watching = arguments.how.begin()?;
     let solution = Solution::read(&latest(&arguments.folder)?)?;
+    hold_less(solution.mesh.patches.len());
     let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
     prepare(output)?;

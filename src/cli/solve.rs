@@ -3,7 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
-use super::memory::peak_memory;
+use super::memory::{load_scene, peak_memory};
 use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
 use super::progress::{Look, catch_interrupts};
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
-    let scene = Scene::load(file)?;
+    let scene = load_scene(file)?;
     let load = started.elapsed().as_secs_f64();
     warn(&scene);
     prepare(&arguments.output)?;

@@ -49,31 +49,62 @@ pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
     frame: Frame,
     regions: OnceLock<Regions>,
-    /// By triangle.
-    surfaces: Vec<u32>,
+    firsts: Firsts,
+}
+
+/// Which triangles are the first ones of their surfaces: a bit each, and how many there are before each word of bits.
+struct Firsts {
+    words: Vec<u64>,
+    before: Vec<u32>,
+}
+
+impl Firsts {
+    /// Those of surfaces with so many triangles each.
+    fn of(counts: impl Iterator<Item = usize>) -> Self {
+        let mut words = Vec::new();
+        let mut first = 0;
+        for count in counts {
+            words.resize(first / 64 + 1, 0u64);
+            words[first / 64] |= 1 << (first % 64);
+            first += count;
+        }
+        words.resize(first.div_ceil(64), 0);
+        words.shrink_to_fit();
+        let mut sum = 0;
+        let before = words.iter().map(|word| {
+            sum += word.count_ones();
+            sum - word.count_ones()
+        });
+        Self {
+            before: before.collect(),
+            words,
+        }
+    }
+
+    /// The surface of a triangle.
+    fn surface(&self, triangle: u32) -> u32 {
+        let (word, bit) = (triangle as usize / 64, triangle % 64);
+        let up_to_it = self.words[word] << (63 - bit);
+        self.before[word] + up_to_it.count_ones() - 1
+    }
 }
 
 impl<'a> Surfaces<'a> {
     pub fn new(scene: &'a Scene, mesh: &Mesh) -> Self {
-        let numbered = (0..).zip(&scene.surfaces);
-        let triangles = numbered.flat_map(|(number, surface)| {
-            let count = surface.corners.indices().len() - 2;
-            std::iter::repeat_n(number, count)
-        });
-        let mut surfaces: Vec<u32> = triangles.collect();
-        surfaces.shrink_to_fit();
+        let surfaces = scene.surfaces.iter();
+        let triangles = surfaces.map(|surface| surface.corners.indices().len() - 2);
         Self {
             scene,
             frame: mesh.frame,
             regions: OnceLock::new(),
-            surfaces,
+            firsts: Firsts::of(triangles),
         }
     }
 }
 
 impl Behind for Surfaces<'_> {
     fn at(&self, triangle: u32) -> Backing {
-        let number = self.surfaces[triangle as usize];
+        let number = self.firsts.surface(triangle);
         let surface = &self.scene.surfaces[number as usize];
         let at = |v: u32| self.frame.enter(self.scene.vertices[v as usize]);
         let corners = surface.corners.indices();
@@ -94,5 +125,22 @@ impl Behind for Surfaces<'_> {
     fn is_two_sided(&self) -> bool {
         let mut surfaces = self.scene.surfaces.iter();
         surfaces.all(|surface| surface.sides == Sides::Both)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_is_of_the_surface_that_was_cut_into_it() {
+        let counts: Vec<usize> = (0..200).map(|i| 1 + i * i % 2).collect();
+        let firsts = Firsts::of(counts.iter().copied());
+        let numbered = (0..).zip(&counts);
+        let surfaces = numbered.flat_map(|(number, count)| std::iter::repeat_n(number, *count));
+        for (triangle, surface) in (0..).zip(surfaces) {
+            assert_eq!(firsts.surface(triangle), surface, "{triangle}");
+        }
+        assert!(Firsts::of(std::iter::empty()).words.is_empty());
     }
 }

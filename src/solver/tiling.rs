@@ -40,13 +40,13 @@ pub(super) struct Tiling {
 /// By patch with cells that are cut into four: which ones are, a cell before its parts. All others are tiles.
 type Uneven = FxHashMap<u32, Vec<bool>>;
 
-/// How a patch is cut into tiles.
+/// How a patch is cut into tiles; no side into more than [`SIZE`] asks for.
 #[derive(Debug, Clone, Copy)]
 enum Cut {
     /// A triangle, into four so many times.
-    Levels(u32),
+    Levels(u8),
     /// A quad, into so many columns and rows.
-    Grid(u32, u32),
+    Grid(u16, u16),
 }
 
 impl Tiling {
@@ -184,11 +184,11 @@ impl Cut {
             [a, b, c, d] => {
                 let width = a.distance(*b).max(c.distance(*d));
                 let height = b.distance(*c).max(d.distance(*a));
-                Self::Grid(parts(width) as u32, parts(height) as u32)
+                Self::Grid(parts(width) as u16, parts(height) as u16)
             }
             corners => {
                 let levels = parts(diameter(corners)).log2().ceil() as u32;
-                Self::Levels(levels.min(DEEPEST))
+                Self::Levels(levels.min(DEEPEST) as u8)
             }
         }
     }
@@ -207,8 +207,8 @@ impl Cut {
     /// The cells before any is cut into four.
     fn whole_cells(self) -> Vec<Quad> {
         match self {
-            Self::Levels(levels) => cells_at(true, levels),
-            Self::Grid(columns, rows) => cells_in(columns, rows),
+            Self::Levels(levels) => cells_at(true, levels.into()),
+            Self::Grid(columns, rows) => cells_in(columns.into(), rows.into()),
         }
     }
 
