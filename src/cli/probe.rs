@@ -7,7 +7,7 @@ use super::{CliError, say};
 use crate::output::write_atomically;
 use crate::solution::{Probe, Prober, Solution};
 use clap::Args;
-use csv::{ReaderBuilder, StringRecord, WriterBuilder};
+use csv::{ErrorKind, ReaderBuilder, StringRecord, WriterBuilder};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -55,15 +55,19 @@ fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Co
         None => say::result(&table)?,
     }
     if missed > 0 {
-        eprintln!("{missed} points lie on no surface that faces their way and were left empty");
+        let lie = if missed == 1 {
+            "point lies"
+        } else {
+            "points lie"
+        };
+        eprintln!("{missed} {lie} on no surface that faces that way: left empty");
     }
     Ok(Code::Success)
 }
 
 /// The table of points with the light added, and how many points met no surface.
 fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), CliError> {
-    let unreadable =
-        |e: csv::Error| CliError::Input(format!("cannot read {}: {e}", path.display()));
+    let unreadable = |e: csv::Error| CliError::Input(unreadable(path, &e));
     let mut reader = ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -99,6 +103,25 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
         .into_inner()
         .map_err(|e| CliError::System(format!("cannot make the table: {e}")))?;
     Ok((table, missed))
+}
+
+/// Why a table cannot be read.
+fn unreadable(path: &Path, error: &csv::Error) -> String {
+    let line = error.position().map_or(0, csv::Position::line);
+    let (found, expected) = match error.kind() {
+        ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => (
+            format!("{len} columns"),
+            format!("{expected_len} as in the lines before"),
+        ),
+        ErrorKind::Utf8 { .. } => ("bytes that are not UTF-8".into(), "text".into()),
+        _ => return format!("cannot read {}: {error}", path.display()),
+    };
+    format!(
+        "{}:{line}: found {found}, expected {expected}",
+        path.display()
+    )
 }
 
 fn place_columns(header: &StringRecord, path: &Path) -> Result<[usize; 6], CliError> {

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::solution::Solution;
 use crate::{Run, Settings, Target};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
 use std::time::Instant;
 
 #[derive(Debug, Args)]
@@ -45,7 +45,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     if let Some(scene) = scene {
         warn(&scene);
         run.relight(scene)?;
-        run.report_mut().scene_file = arguments.scene.clone();
+        let file = arguments.scene.as_deref();
+        run.report_mut().scene_file = file.and_then(|file| absolute(file).ok());
     }
     let now = run.report_mut();
     now.seconds.load += started.elapsed().as_secs_f64();

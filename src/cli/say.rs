@@ -20,6 +20,14 @@ pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
+/// A power, in W, for a line of text.
+pub(super) fn watts(power: f64) -> String {
+    match power.abs() {
+        0.0 | 1e-3..1e9 => format!("{power:.4} W"),
+        _ => format!("{power:.4e} W"),
+    }
+}
+
 /// A result on standard output. That whoever reads has read enough is no failure.
 pub(super) fn result(text: impl AsRef<[u8]>) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
@@ -65,5 +73,18 @@ fn marked(word: &str, colour: &str) -> String {
     match std::io::stderr().is_terminal() && !plain {
         true => format!("\u{1b}[1;{colour}m{word}\u{1b}[0m"),
         false => word.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::watts;
+
+    #[test]
+    fn no_power_is_shown_as_nothing_or_as_a_row_of_digits() {
+        assert_eq!(watts(0.0), "0.0000 W");
+        assert_eq!(watts(12.34567), "12.3457 W");
+        assert_eq!(watts(1.25e-6), "1.2500e-6 W");
+        assert_eq!(watts(4e20), "4.0000e20 W");
     }
 }

@@ -122,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let mut run = Run::new(scene, settings)?;
     let report = run.report_mut();
     report.seconds.load = load;
-    report.scene_file = Some(file.clone());
+    report.scene_file = std::path::absolute(file).ok();
     if let Some(model) = model.filter(|model| model.engine != report.engine) {
         warn_of_another_engine(&model, report);
     }
@@ -315,10 +315,10 @@ pub(super) fn summary(solution: &Solution, seconds: f64) -> String {
         )
     });
     format!(
-        "{}{why}: {:.4} W emitted = {:.2}% absorbed + {:.2}% escaped + {:.2}% unshot + {:.2}% residual\n\
+        "{}{why}: {} emitted = {:.2}% absorbed + {:.2}% escaped + {:.2}% unshot + {:.2}% residual\n\
          {estimate}{} vertices, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {} threads\n",
         summary_table(&[row]),
-        power.emitted,
+        say::watts(power.emitted),
         percent(power.absorbed),
         percent(power.escaped),
         percent(power.unshot),

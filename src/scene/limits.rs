@@ -3,6 +3,9 @@
 /// The largest coordinate, in scene units: as large as what the visibility engines take.
 pub(super) const COORDINATE: f64 = 1e18;
 
+/// The largest radiance, W m⁻² sr⁻¹: what is summed of it stays within single precision.
+pub(super) const RADIANCE: f32 = 1e30;
+
 /// The most corners of one polygon: splitting one takes time that grows with their square.
 pub(super) const CORNERS: usize = 4096;
 

@@ -3,7 +3,7 @@
 use super::mtl::{Entry, Library, Stated};
 use super::settings::{Channels, MaterialSettings, Settings, SidesRule};
 use super::text::{TextFile, quote};
-use super::{Material, SceneError};
+use super::{Material, SceneError, limits};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
@@ -81,12 +81,12 @@ fn material(
         m.emitted_radiance.as_ref()
     }) {
         emitted_radiance = stated.channels.as_vec3();
-        if !emitted_radiance
-            .to_array()
+        let channels = emitted_radiance.to_array();
+        if !channels
             .iter()
-            .all(|c| *c >= 0.0 && c.is_finite())
+            .all(|c| (0.0..=limits::RADIANCE).contains(c))
         {
-            let expected = "a finite radiance >= 0 in each channel";
+            let expected = "0 <= radiance <= 1e30 in each channel";
             return Err(stated.refused("emitted radiance", &name, expected));
         }
     }

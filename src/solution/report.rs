@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub struct Report {
     /// Name of the scene.
     pub scene: String,
-    /// Where it was read, as the command was told.
+    /// Where the command read it, from the root on: what refers to it may be run elsewhere.
     #[serde(default)]
     pub scene_file: Option<PathBuf>,
     /// Who traced the rays.

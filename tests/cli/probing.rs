@@ -107,8 +107,15 @@ fn tables_without_places_are_refused_with_their_line() {
         "x,y,z,nx,ny,nz\n0,0,inf,0,1,0\n",
         &["points.csv:2", "`inf`"],
     );
-    refused("x,y,z,nx,ny,nz\n0,0\n", &["points.csv", "line: 2"]);
+    refused(
+        "x,y,z,nx,ny,nz\n0,0\n",
+        &["points.csv:2", "2 columns", "expected 6"],
+    );
     refused("", &["points.csv:1"]);
+    let points = folder.path().join("points.csv");
+    fs::write(&points, b"x,y,z,nx,ny,nz\n0,0,0,0,1,\xff\n").expect("can be written");
+    let run = radiosity(&["probe", text(&solved), text(&points)]);
+    run.assert_refused(3, &["points.csv:2", "not UTF-8"]);
     let missing = folder.path().join("none.csv");
     radiosity(&["probe", text(&solved), text(&missing)]).assert_refused(3, &["none.csv"]);
     radiosity(&["probe", text(Path::new("/nowhere")), text(&missing)])

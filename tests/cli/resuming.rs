@@ -85,10 +85,11 @@ fn killed_at_any_moment_a_solve_resumes_to_the_same_bits() {
 }
 
 #[test]
-fn a_report_repeats_its_solve() {
+fn a_report_repeats_its_solve_from_anywhere() {
     let folder = folder();
     let [first, second, third] = ["1", "2", "3"].map(|name| folder.path().join(name));
     let emission = scene("emission");
+    let [scenes, name] = [emission.parent(), emission.file_name().map(Path::new)];
     let options = [
         "--preset",
         "draft",
@@ -99,12 +100,12 @@ fn a_report_repeats_its_solve() {
         "--no-pictures",
     ];
     let engine = ["--engine", "obvhs"];
-    run(&[
-        &["solve", text(&emission), "-o", text(&first)],
-        &options,
-        &engine,
-    ])
-    .assert_success();
+    let solve = ["solve", text(name.expect("has one")), "-o", text(&first)];
+    let solved = command()
+        .current_dir(scenes.expect("is in one"))
+        .args([&solve[..], &options, &engine].concat())
+        .output();
+    Run::from(solved.expect("can be started")).assert_success();
     let report = first.join("report.json");
     let from = ["solve", "--from", text(&report), "--no-pictures", "-o"];
     run(&[&from, &[text(&second)]]).assert_success();

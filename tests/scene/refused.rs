@@ -194,7 +194,7 @@ fn material_libraries() {
         "newmtl a\nKd nan 0 0\n",
         &format!("it.mtl:2: found the reflectance (NaN, 0, 0) of `a`; {reflectance}"),
     );
-    let radiance = "expected a finite radiance >= 0 in each channel";
+    let radiance = "expected 0 <= radiance <= 1e30 in each channel";
     mtl_is_refused(
         "newmtl a\nKe 0 -1 0\n",
         &format!("it.mtl:2: found the emitted radiance (0, -1, 0) of `a`; {radiance}"),
@@ -202,6 +202,12 @@ fn material_libraries() {
     mtl_is_refused(
         "newmtl a\nKe inf 0 0\n",
         &format!("it.mtl:2: found the emitted radiance (inf, 0, 0) of `a`; {radiance}"),
+    );
+    mtl_is_refused(
+        "newmtl a\nKe 1 2e31 3\n",
+        &format!(
+            "it.mtl:2: found the emitted radiance (1, 20000000000000000000000000000000, 3) of `a`; {radiance}"
+        ),
     );
     mtl_is_refused(
         "newmtl a\nKd .1 .2\n",

@@ -114,7 +114,7 @@ fn materials_of_a_scene_file() {
     );
     toml_is_refused(
         "[material.a]\nemitted_radiance = -1",
-        "scene.toml:3: found the emitted radiance (-1, -1, -1) of `a`; expected a finite radiance >= 0 in each channel",
+        "scene.toml:3: found the emitted radiance (-1, -1, -1) of `a`; expected 0 <= radiance <= 1e30 in each channel",
     );
     toml_is_refused(
         "[material.b]\nreflectance = 0",
