@@ -8,7 +8,7 @@ use glam::DVec3;
 pub type Weighted = (u32, f32);
 
 impl Mesh {
-    /// The triangles of a leaf's fan; see [`Element::fan`].
+    /// The triangles of a leaf's fan; see [`Element::fan`](super::Element::fan).
     pub fn fan(&self, leaf: u32) -> impl Iterator<Item = [u32; 3]> + use<> {
         self.element(leaf).fan()
     }

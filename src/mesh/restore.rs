@@ -21,67 +21,82 @@ impl Mesh {
         buried: &[bool],
     ) -> Result<(), String> {
         check(self.frame.is_sound(), "the frame")?;
-        let (roots, first) = (self.elements.roots(), self.vertices.len());
         check(
             buried.len() == vertices.len(),
             "the number of buried vertices",
         )?;
-        let mut makers = vec![NONE; vertices.len() - first];
+        let makers = self.restore_elements(elements, vertices.len())?;
+        self.restore_vertices(vertices, &makers)?;
+        self.finish_topology(0, buried);
+        Ok(())
+    }
+
+    /// Takes in the elements; gives the first one that has each of the vertices that are not of coarsest grids.
+    fn restore_elements(
+        &mut self,
+        elements: &[Element],
+        vertices: usize,
+    ) -> Result<Vec<u32>, String> {
+        let (roots, first) = (self.elements.roots(), self.vertices.len());
+        let mut makers = vec![NONE; vertices - first];
         for (number, element) in (0..).zip(elements) {
             let patch = element.patch as usize;
             check(patch < self.patches.len(), "the patch of an element")?;
-            let within = |v: u32| (v as usize) < vertices.len();
+            let within = |v: u32| (v as usize) < vertices;
             check(element.vertices().all(within), "a corner of an element")?;
             let children = element.children as usize;
             let follow = children > number as usize && children >= roots;
-            check(
-                element.is_leaf() || (follow && children + 4 <= elements.len()),
-                "the children of an element",
-            )?;
+            let are_there = follow && children + 4 <= elements.len();
+            check(element.is_leaf() || are_there, "the children of an element")?;
             let later = |v: u32| (v as usize).checked_sub(first);
             for vertex in element.vertices().filter_map(later) {
                 makers[vertex] = number.min(makers[vertex]);
             }
-            if (number as usize) < roots {
-                let now = Element {
-                    children: element.children,
-                    ..self.element(number)
-                };
-                let hanging = now.hanging;
-                check(
-                    now == Element {
-                        hanging,
-                        ..*element
-                    },
-                    "an element of a grid",
-                )?;
-                if !now.is_leaf() {
-                    self.elements.change(number, now);
-                }
-            } else {
+            if number as usize >= roots {
                 self.elements.push(*element);
+                continue;
+            }
+            let now = Element {
+                children: element.children,
+                ..self.element(number)
+            };
+            // Hanging vertices are found anew.
+            let read = Element {
+                hanging: now.hanging,
+                ..*element
+            };
+            check(read == now, "an element of a grid")?;
+            if !now.is_leaf() {
+                self.elements.change(number, now);
             }
         }
-        for (number, of) in (0..).zip(vertices) {
+        Ok(makers)
+    }
+
+    fn restore_vertices(
+        &mut self,
+        vertices: &[StoredVertex],
+        makers: &[u32],
+    ) -> Result<(), String> {
+        let (of_grids, later) = vertices.split_at(self.vertices.len());
+        for (number, of) in (0..).zip(of_grids) {
+            let made = self.vertex(number);
+            let is_same = (made.patch, made.lattice) == (of.patch, of.lattice);
+            check(is_same, "a vertex")?;
+        }
+        for (of, maker) in later.iter().zip(makers) {
             let StoredVertex { patch, lattice, .. } = *of;
-            let Some(later) = (number as usize).checked_sub(first) else {
-                let made = self.vertex(number);
-                check((made.patch, made.lattice) == (patch, lattice), "a vertex")?;
-                continue;
-            };
-            let maker = makers[later];
             let is_on_a_patch = (patch as usize) < self.patches.len()
                 && lattice.u.max(lattice.v) <= UNIT
-                && maker != NONE;
+                && *maker != NONE;
             check(is_on_a_patch, "a vertex")?;
-            self.vertices.push(Vertex {
+            let number = self.vertices.push(Vertex {
                 patch,
                 lattice,
-                maker,
+                maker: *maker,
             });
             self.at.insert((patch, lattice), number);
         }
-        self.finish_topology(0, buried);
         Ok(())
     }
 }
