@@ -36,6 +36,7 @@ const SINGLE: [[Lattice; 5]; 2] = [
         Lattice::new(UNIT, 0),
         Lattice::new(0, UNIT),
         Lattice::new(UNIT / 3, UNIT / 3),
+        // It has no fifth.
         Lattice::new(UNIT, UNIT),
     ],
 ];

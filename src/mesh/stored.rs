@@ -156,8 +156,10 @@ impl StoredPatch {
         let is_side = |count: u32| count.is_power_of_two() && count <= MOST_ALONG;
         let (columns, rows) = patch.grid;
         let is_full = is_side(columns) && is_side(rows) && columns * rows == end - start;
-        let is_fit = !patch.is_triangle() || columns * rows == 1;
-        check(is_full && is_fit, "a grid")?;
+        check(
+            is_full && !(patch.is_triangle() && end - start > 1),
+            "a grid",
+        )?;
         let first = patch.first_vertices();
         let is_known = first.start == vertex && self.vertices.starts_with(&Vec::from_iter(first));
         check(is_known, "a vertex of a patch")?;

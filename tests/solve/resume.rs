@@ -334,6 +334,9 @@ fn a_file_whose_mesh_is_not_sound_is_refused() {
     let begin = |end: u32| encoded((of.exitance, of.roots.start, end, of.grid));
     refused(begin(of.roots.end), begin(1 << 20), "a root");
     refused(begin(of.roots.end), begin(of.roots.end + 1), "a grid");
+    let grid = (1u32 << 16, 1u32 << 16);
+    let wide = encoded((of.exitance, of.roots.start, of.roots.end, grid));
+    refused(begin(of.roots.end), wide, "a grid");
     let mut vertices: Vec<u32> = whole.mesh.vertices_of(1).collect();
     let known = encoded((of.grid, &vertices));
     vertices[0] = u32::MAX;
