@@ -67,7 +67,7 @@ fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Co
 
 /// The table of points with the light added, and how many points met no surface.
 fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), CliError> {
-    let unreadable = |e: csv::Error| CliError::Input(unreadable(path, &e));
+    let unreadable = |e: csv::Error| unreadable(path, &e);
     let mut reader = ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -106,7 +106,8 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
 }
 
 /// Why a table cannot be read.
-fn unreadable(path: &Path, error: &csv::Error) -> String {
+fn unreadable(path: &Path, error: &csv::Error) -> CliError {
+    let name = path.display();
     let line = error.position().map_or(0, csv::Position::line);
     let (found, expected) = match error.kind() {
         ErrorKind::UnequalLengths {
@@ -116,12 +117,9 @@ fn unreadable(path: &Path, error: &csv::Error) -> String {
             format!("{expected_len} as in the lines before"),
         ),
         ErrorKind::Utf8 { .. } => ("bytes that are not UTF-8".into(), "text".into()),
-        _ => return format!("cannot read {}: {error}", path.display()),
+        _ => return CliError::Input(format!("cannot read {name}: {error}")),
     };
-    format!(
-        "{}:{line}: found {found}, expected {expected}",
-        path.display()
-    )
+    CliError::Input(format!("{name}:{line}: found {found}, expected {expected}"))
 }
 
 fn place_columns(header: &StringRecord, path: &Path) -> Result<[usize; 6], CliError> {
