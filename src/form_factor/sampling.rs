@@ -137,13 +137,13 @@ impl Kernel for Splitting<'_, '_> {
 }
 
 impl Sampler<'_> {
-    /// Evaluates `source` at each receiver into `gathers`; returns the number of rays. Keys seed the jitter of each receiver.
+    /// Evaluates `source` at each receiver into `gathers`, which are as many; returns the number of rays. Keys seed the jitter of each receiver.
     pub fn gather(
         &self,
         source: &Source,
         receivers: &[(Receiver, u32)],
         scratch: &mut Scratch,
-        gathers: &mut Vec<Gather>,
+        gathers: &mut [Gather],
     ) -> u64 {
         let isa = scratch.isa;
         let most = receivers.len().max(scratch.leaves.len());
@@ -170,9 +170,9 @@ impl Sampler<'_> {
                 scratch,
             });
         }
-        gathers.clear();
-        let leaves = scratch.leaves[..receivers.len()].iter();
-        gathers.extend(leaves.map(|leaves| sum(source, leaves)));
+        for (gather, leaves) in gathers.iter_mut().zip(&scratch.leaves) {
+            *gather = sum(source, leaves);
+        }
         rays
     }
 
@@ -316,7 +316,7 @@ mod tests {
                     isa,
                     ..Scratch::default()
                 };
-                let mut gathers = Vec::new();
+                let mut gathers = vec![Gather::default(); receivers.len()];
                 let rays = sampler.gather(&source, &receivers, &mut scratch, &mut gathers);
                 (rays, gathers)
             };

@@ -15,10 +15,14 @@ use crate::geometry::jitter;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// How much finer the thresholds ε_fe and ε_fd of the second look are.
 pub(super) const FINER: f64 = 1.0 / 8.0;
+
+/// Patches that are looked at side by side.
+const SIDE_BY_SIDE: usize = 64;
 
 /// The estimated error of a solution, from points spread over all that receives light.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -137,18 +141,27 @@ impl Solver<'_> {
         let levels = self.options.source_levels();
         // As bright as thresholds expect: what sampling costs does not depend on the unit of light.
         let even = vec![Spectrum::splat(self.reference as f32); 1 << (2 * levels)];
-        let mut gathered = vec![Power::ZERO; receivers.len()];
-        let mut factors = vec![0.0; receivers.len()];
-        for (patch, of) in self.mesh.patches.iter().enumerate() {
+        let looked_at = |&patch: &usize| {
+            let of = self.mesh.patches.at(patch);
             let bright = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &even));
             let seen = evaluate(plain, &bright, receivers).0;
-            for (factor, gather) in factors.iter_mut().zip(seen) {
-                *factor += f64::from(gather.irradiance.x) / self.reference;
-            }
-            if whole.unshot_power(&self.mesh, patch, Sign::Positive) != Power::ZERO {
+            let is_lit = whole.unshot_power(&self.mesh, patch, Sign::Positive) != Power::ZERO;
+            let arrived = is_lit.then(|| {
                 let shooter = (patch, Sign::Positive);
                 let source = self.source_of(whole, shooter, &fine.thresholds);
-                let arrived = evaluate(fine, &Shooter::Patch(source), receivers).0;
+                evaluate(fine, &Shooter::Patch(source), receivers).0
+            });
+            (seen, arrived.unwrap_or_default())
+        };
+        let mut gathered = vec![Power::ZERO; receivers.len()];
+        let mut factors = vec![0.0; receivers.len()];
+        let patches: Vec<usize> = (0..self.mesh.patches.len()).collect();
+        for some in patches.chunks(SIDE_BY_SIDE) {
+            let looked_at = some.par_iter().with_max_len(1).map(looked_at);
+            for (seen, arrived) in looked_at.collect::<Vec<_>>() {
+                for (factor, gather) in factors.iter_mut().zip(seen) {
+                    *factor += f64::from(gather.irradiance.x) / self.reference;
+                }
                 for (sum, gather) in gathered.iter_mut().zip(arrived) {
                     *sum += gather.irradiance.as_dvec3();
                 }

@@ -9,11 +9,15 @@ use super::course::{Gathering, Stage};
 use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
-use super::volley::{Giver, side_by_side};
+use super::volley::{Giver, gathered};
 use crate::radiometry::{Power, Spectrum};
+use rayon::prelude::*;
 
 /// Of patches that send more than this part of what is emitted, it is known how much of that arrives or escapes.
 const MUCH: f64 = 1e-3;
+
+/// Vertices at which the light of some patches is added up by one thread.
+const SLICE: usize = 1024;
 
 impl Solver<'_> {
     /// Nothing gathered yet.
@@ -44,7 +48,7 @@ impl Solver<'_> {
         let next: Vec<Giver> = (so_far.next as usize..self.mesh.patches.len())
             .map(giver)
             .filter(|giver| giver.power > 0.0)
-            .take(side_by_side(&self.mesh))
+            .take(gathered(&self.mesh))
             .collect();
         let Some(last) = next.last() else {
             let Gathering {
@@ -56,16 +60,26 @@ impl Solver<'_> {
             return self.take_over(irradiance, &whole, lost, sums);
         };
         let much = MUCH * self.emitted().element_sum();
-        for (giver, of) in next.iter().zip(self.given(&next, &whole)) {
-            for (sum, irradiance) in so_far.irradiance.iter_mut().zip(&of.irradiance) {
-                *sum += *irradiance;
+        let given = self.given(&next, &whole);
+        let light = so_far.irradiance.par_chunks_mut(SLICE).enumerate();
+        light.for_each(|(slice, light)| {
+            for of in &given {
+                for (sum, irradiance) in light.iter_mut().zip(&of.irradiance[slice * SLICE..]) {
+                    *sum += *irradiance;
+                }
             }
+        });
+        let found = next.par_iter().zip(&given).with_max_len(1);
+        let found = found
+            .filter(|(giver, _)| giver.power > much)
+            .map(|(giver, of)| {
+                let arrived = (of.received(&self.mesh) + of.lost.all).element_sum();
+                (arrived / giver.power, giver.power)
+            });
+        so_far.sums.par_extend(found);
+        for of in given {
             self.course.rays += of.rays;
             so_far.lost += of.lost;
-            if giver.power > much {
-                let arrived = (of.received(&self.mesh) + of.lost.all).element_sum();
-                so_far.sums.push((arrived / giver.power, giver.power));
-            }
         }
         so_far.next = last.patch as u32 + 1;
         so_far.whole = Some(whole);

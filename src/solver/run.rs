@@ -242,7 +242,7 @@ impl<'a> Solver<'a> {
     pub(super) fn unshot_powers(&self) -> Vec<Power> {
         let of_patch = |patch| self.light.unshot_by_sign(&self.mesh, patch);
         let patches = (0..self.mesh.patches.len()).into_par_iter();
-        patches.flat_map_iter(of_patch).collect()
+        patches.with_min_len(32).flat_map_iter(of_patch).collect()
     }
 
     /// What all patches have unshot: the positive, and the negative.

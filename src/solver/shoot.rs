@@ -8,8 +8,12 @@ use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
 use std::cell::RefCell;
 
-/// Vertices that are evaluated together: enough to fill packets on every level of the source, few enough to share out.
+/// Points that are evaluated together: enough to fill packets on every level of the source …
 const BLOCK: usize = 32;
+
+/// … but of a short list fewer, down to these, so that there are as many blocks as this to share out.
+const LEAST_BLOCK: usize = 8;
+const SHARES: usize = 32;
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
@@ -40,28 +44,22 @@ pub(super) fn evaluate(
     shooter: &Shooter,
     points: &[(Receiver, u32)],
 ) -> (Vec<Gather>, u64) {
+    let block = (points.len() / SHARES).clamp(LEAST_BLOCK, BLOCK);
+    let mut gathers = vec![Gather::default(); points.len()];
     // Each block a task of its own: of several together, one thread would still be at the last ones when nothing is left for the others.
-    let chunks = points.par_chunks(BLOCK).with_max_len(1);
-    let gather = |block: &[(Receiver, u32)]| {
-        let mut gathers = Vec::with_capacity(block.len());
-        let rays = match shooter {
-            Shooter::Patch(source) => SCRATCH
-                .with_borrow_mut(|scratch| sampler.gather(source, block, scratch, &mut gathers)),
+    let blocks = points.par_chunks(block).zip(gathers.par_chunks_mut(block));
+    let rays = blocks
+        .with_max_len(1)
+        .map(|(points, gathers)| match shooter {
+            Shooter::Patch(source) => {
+                SCRATCH.with_borrow_mut(|scratch| sampler.gather(source, points, scratch, gathers))
+            }
             Shooter::All { tiling, settled } => CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
-                sampler.gather_clusters(&tiling.clusters, block, *settled, scratch, &mut gathers)
+                sampler.gather_clusters(&tiling.clusters, points, *settled, scratch, gathers)
             }),
-        };
-        (gathers, rays)
-    };
-    let blocks: Vec<(Vec<Gather>, u64)> = chunks.map(gather).collect();
-    let rays = blocks.iter().map(|(_, rays)| rays).sum();
-    (
-        blocks
-            .into_iter()
-            .flat_map(|(gathers, _)| gathers)
-            .collect(),
-        rays,
-    )
+        });
+    let rays = rays.sum();
+    (gathers, rays)
 }
 
 /// Evaluates `beam` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.

@@ -173,12 +173,9 @@ impl<'a> Solver<'a> {
         // The square root shares the rays so that each shot adds its part to the error of the whole.
         let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
         // An emitter emits wherever it is.
-        let emits = |patch: u32| self.mesh.patch(patch).exitance != Spectrum::ZERO;
-        let is_whole = self.patches_without_buried();
-        let is_open = |patch, point| {
-            is_whole[patch as usize] || emits(patch) || self.is_open(patch as usize, point)
-        };
-        let draws = match source {
+        let emits = |patch: usize| self.mesh.patches.at(patch).exitance != Spectrum::ZERO;
+        let extent = self.mesh.frame.extent();
+        match source {
             Shooter::Patch(source) => {
                 let part = |(cell, power): (&Cell, Spectrum)| {
                     let cell = *cell;
@@ -189,12 +186,22 @@ impl<'a> Solver<'a> {
                         at: move |s, t| cell.at(s, t),
                     }
                 };
-                draw(source.finest().map(part), rays, seed)
+                let draws = draw(source.finest().map(part), rays, seed);
+                let mut vertices = self.mesh.vertices_of(shooter as u32);
+                let is_whole = !vertices.any(|v| self.mesh.buried[v as usize]) || emits(shooter);
+                let is_open = |_, point| is_whole || self.is_open(shooter, point);
+                escaped(draws, self.visibility, &self.behind, is_open, extent)
             }
-            Shooter::All { tiling, .. } => draw(tiling.parts(), rays, seed),
-        };
-        let extent = self.mesh.frame.extent();
-        escaped(draws, self.visibility, &self.behind, is_open, extent)
+            Shooter::All { tiling, .. } => {
+                let draws = draw(tiling.parts(), rays, seed);
+                let is_whole = self.patches_without_buried();
+                let is_open = |patch: u32, point| {
+                    let number = patch as usize;
+                    is_whole[number] || emits(number) || self.is_open(number, point)
+                };
+                escaped(draws, self.visibility, &self.behind, is_open, extent)
+            }
+        }
     }
 
     /// Of each patch, whether all its vertices are open.

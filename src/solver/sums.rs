@@ -15,7 +15,7 @@ pub(super) fn in_order<T: Send>(
     let mut terms = Vec::new();
     for first in (0..count).step_by(BLOCK) {
         let block = first..count.min(first + BLOCK);
-        let found = block.into_par_iter().with_min_len(1024).map(&term);
+        let found = block.into_par_iter().with_min_len(64).map(&term);
         found.collect_into_vec(&mut terms);
         terms.drain(..).for_each(&mut add);
     }

@@ -11,8 +11,11 @@ use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
-/// Patches that give their light side by side …
+/// Patches that shoot side by side …
 const SIDE_BY_SIDE: usize = 8;
+
+/// … and from which light is gathered so. …
+const GATHERED: usize = 32;
 
 /// … unless together they would hold more values at vertices.
 const VALUES: usize = 1 << 22;
@@ -77,8 +80,8 @@ impl Solver<'_> {
         for giver in givers {
             self.light.take(&self.mesh, giver.patch, giver.sign);
         }
-        for of in given {
-            self.light.receive(of.irradiance.into_par_iter());
+        for of in &given {
+            self.light.receive(of.irradiance.par_iter().copied());
             self.course.rays += of.rays;
             self.course.lost += of.lost;
         }
@@ -101,9 +104,19 @@ pub(super) fn strongest(powers: &[Power], most: usize) -> Vec<Giver> {
     givers
 }
 
-/// How many patches may give their light at once.
+/// How many patches may shoot at once.
 pub(super) fn side_by_side(mesh: &Mesh) -> usize {
-    (VALUES / mesh.vertices.len().max(1)).clamp(1, SIDE_BY_SIDE)
+    held(mesh).min(SIDE_BY_SIDE)
+}
+
+/// How many patches' light may be gathered at once.
+pub(super) fn gathered(mesh: &Mesh) -> usize {
+    held(mesh).min(GATHERED)
+}
+
+/// How many values there may be at each vertex.
+fn held(mesh: &Mesh) -> usize {
+    (VALUES / mesh.vertices.len().max(1)).max(1)
 }
 
 #[cfg(test)]

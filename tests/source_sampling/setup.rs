@@ -115,14 +115,14 @@ pub fn gather_one(
     receiver: Receiver,
 ) -> Gather {
     let sampler = sampler(visibility, formula, threshold);
-    let mut gathers = Vec::new();
+    let mut gather = [Gather::default()];
     sampler.gather(
         source,
         &[(receiver, 7)],
         &mut Scratch::default(),
-        &mut gathers,
+        &mut gather,
     );
-    gathers[0]
+    gather[0]
 }
 
 /// Gathers in blocks of the given size with one scratch memory.
@@ -133,13 +133,13 @@ pub fn gather(
     receivers: &[(Receiver, u32)],
     block: usize,
 ) -> Vec<Gather> {
-    let (mut scratch, mut gathers) = (Scratch::default(), Vec::new());
+    let mut scratch = Scratch::default();
+    let mut gathers = vec![Gather::default(); receivers.len()];
     let sampler = sampler(visibility, HYBRID, threshold);
-    let blocks = receivers.chunks(block).flat_map(|block| {
-        sampler.gather(source, block, &mut scratch, &mut gathers);
-        gathers.clone()
-    });
-    blocks.collect()
+    for (receivers, gathers) in receivers.chunks(block).zip(gathers.chunks_mut(block)) {
+        sampler.gather(source, receivers, &mut scratch, gathers);
+    }
+    gathers
 }
 
 /// Splits where the irradiance of a cell is off by `threshold`, or is ten times that.

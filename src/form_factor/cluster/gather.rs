@@ -22,7 +22,7 @@ pub struct ClusterScratch {
 }
 
 impl Sampler<'_> {
-    /// Evaluates `clusters` at each receiver into `gathers`; returns the number of rays. With `settled`, neighbours send their rays
+    /// Evaluates `clusters` at each receiver into `gathers`, which are as many; returns the number of rays. With `settled`, neighbours send their rays
     /// to the same places, so that what they find differs by little; else each draws its own, so that the mean of many is right.
     pub fn gather_clusters(
         &self,
@@ -30,7 +30,7 @@ impl Sampler<'_> {
         receivers: &[(Receiver, u32)],
         settled: bool,
         scratch: &mut ClusterScratch,
-        gathers: &mut Vec<Gather>,
+        gathers: &mut [Gather],
     ) -> u64 {
         let ClusterScratch {
             isa,
@@ -63,8 +63,9 @@ impl Sampler<'_> {
         }
         self.visibility.occluded(fans, masks);
         let mut masks = masks.iter().copied();
-        gathers.clear();
-        gathers.extend(points.iter().map(|found| found.sum(&mut masks)));
+        for (gather, found) in gathers.iter_mut().zip(points) {
+            *gather = found.sum(&mut masks);
+        }
         fans.segments() as u64
     }
 }

@@ -102,7 +102,7 @@ fn gathered_with(
     clusters.radiate(radiosities, 1);
     let mut scratch = ClusterScratch::default();
     scratch.isa = isa;
-    let mut gathers = Vec::new();
+    let mut gathers = vec![Gather::default(); receivers.len()];
     sampler.gather_clusters(&clusters, receivers, settled, &mut scratch, &mut gathers);
     gathers
 }
