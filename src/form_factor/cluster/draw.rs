@@ -104,26 +104,28 @@ impl Clusters {
 
 #[cfg(test)]
 mod tests {
+    use super::super::found::Found;
     use super::*;
     use crate::form_factor::Tile;
     use crate::radiometry::Spectrum;
-    use glam::DVec3;
+    use glam::{DVec3, Vec3};
 
-    /// Tiles in a row, of which each fifth sends nothing.
-    fn row() -> Clusters {
+    /// Tiles in a row that send what is given.
+    fn row(sent: impl Fn(u32) -> f32, seed: u32) -> Clusters {
         let tile = |i: u32| {
             let at = |x: f64, y: f64| DVec3::new(f64::from(i) + x, y, 0.0);
             Tile::new(&[at(0.0, 0.0), at(0.9, 0.0), at(0.0, 0.9)], DVec3::Z, false)
         };
-        let sent = |i: u32| Spectrum::splat(if i % 5 == 2 { 0.0 } else { 1.0 + i as f32 });
+        let sent = |i: u32| Spectrum::splat(sent(i));
         let mut clusters = Clusters::new((0..1000).map(tile).collect(), 1000.0);
-        clusters.radiate((0..1000).map(sent).collect(), 7);
+        clusters.radiate((0..1000).map(sent).collect(), seed);
         clusters
     }
 
     #[test]
     fn a_draw_falls_where_what_tiles_send_reaches_what_is_drawn() {
-        let clusters = row();
+        // Each fifth sends nothing.
+        let clusters = row(|i| if i % 5 == 2 { 0.0 } else { 1.0 + i as f32 }, 7);
         let nodes = (0..clusters.nodes.len() as u32).map(Cluster::Node);
         let all: Vec<Cluster> = nodes.chain((0..1000).map(Cluster::Tile)).collect();
         let drawn = |cluster: &Cluster| Drawn {
@@ -145,6 +147,44 @@ mod tests {
                 assert_eq!(aim.target.x.floor(), clusters.tiles[tile].corners[0].x);
             });
             assert!(expected.next().is_none());
+        }
+    }
+
+    /// Of five clusters that count alike one is drawn, and then a place in it: also in the first shot of a solve, of which the seed is 0.
+    #[test]
+    fn which_cluster_is_drawn_says_nothing_of_where_in_it() {
+        for seed in [0, 1] {
+            let clusters = row(|_| 1.0, seed);
+            let count = clusters.nodes.len() as u32;
+            let large = (0..count).filter(|n| {
+                let node = &clusters.nodes[*n as usize];
+                (100..200).contains(&(node.end - node.first))
+            });
+            let large: Vec<Cluster> = large.map(Cluster::Node).take(5).collect();
+            assert_eq!(large.len(), 5);
+            let place_of = |target: Vec3| {
+                let is_there = |tile: &Tile| tile.corners[0].x == target.x.floor();
+                clusters.tiles.iter().position(is_there).expect("of a tile")
+            };
+            let (mut found, mut first_halves) = (Found::default(), 0_usize);
+            for key in 0..2000 {
+                found.clear();
+                for cluster in &large {
+                    found.loosen(*cluster, 1.0, f32::INFINITY, key);
+                }
+                found.draw(&clusters, key, |of, aim| {
+                    let node = clusters.node(of.cluster);
+                    let middle = (node.first + node.end) as usize / 2;
+                    Spectrum::splat(if place_of(aim.target) < middle {
+                        1.0
+                    } else {
+                        0.0
+                    })
+                });
+                first_halves += found.len();
+            }
+            // 1000, standard deviation 22; five of them.
+            assert!(first_halves.abs_diff(1000) < 112, "{first_halves}");
         }
     }
 }

@@ -122,7 +122,8 @@ impl Found {
         }
         let loose = &mut self.loose;
         loose.bounds += bound;
-        let drawn = jitter(key, cluster.key())[0] as f32 * loose.bounds < bound;
+        // By another number than those that say where in a cluster its aim is.
+        let drawn = jitter(!key, cluster.key())[0] as f32 * loose.bounds < bound;
         if drawn || loose.drawn.is_none() {
             loose.drawn = Some((cluster, bound));
         }
