@@ -61,6 +61,7 @@
 //! Delaunay triangulation in which well-shaped neighbours are joined to quads. Left out with a warning are
 //! repetitions, polygons without area and polygons whose boundary crosses itself.
 
+mod backs;
 mod cameras;
 mod compare;
 mod duplicates;
@@ -87,6 +88,7 @@ mod triangulate;
 mod warnings;
 mod weld;
 
+pub(crate) use backs::back_to_back;
 pub use error::SceneError;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};

@@ -4,8 +4,9 @@
 //! closed and consistently oriented is a solid, or a room seen from inside: its stated front radiates.
 //! Anything else is two-sided, and so is a solid that is `inside_out`. Closed and consistent means that every edge is run through as often in one
 //! direction as in the other. Each time once, for an ordinary solid; twice where two solids touch along
-//! an edge, or where a sheet is modelled as two coincident faces back to back.
+//! an edge, or where a sheet is modelled as two coincident faces back to back. Of such two each radiates from its front, whatever the rule.
 
+use super::backs::back_to_back;
 use super::inside_out;
 use super::polygons::Polygons;
 use super::settings::SidesRule;
@@ -26,13 +27,19 @@ pub(super) fn decide(
         true => skins(polygons, repeated, shines),
         false => Default::default(),
     };
-    for surface in surfaces {
+    for surface in &mut *surfaces {
         surface.sides = match rules[surface.material as usize] {
             SidesRule::Front => Sides::Front,
             SidesRule::Both => Sides::Both,
             SidesRule::Auto if is_skin[surface.polygon as usize] => Sides::Front,
             SidesRule::Auto => Sides::Both,
         };
+    }
+    if surfaces.iter().any(|surface| surface.sides == Sides::Both) {
+        // The back of one of these would be the front of the other once more.
+        for number in back_to_back(surfaces, &polygons.positions).into_keys() {
+            surfaces[number as usize].sides = Sides::Front;
+        }
     }
     let rule = |polygon: usize| rules[polygons.materials[polygon] as usize];
     let decided = |polygon: &usize| {

@@ -2,8 +2,9 @@
 
 use crate::geometry::{Frame, polygon::vector_area};
 use crate::mesh::{Mesh, Regions, regions};
-use crate::scene::{Scene, Sides};
+use crate::scene::{Scene, Sides, back_to_back};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 use std::sync::OnceLock;
 
 /// What stands behind a triangle of the visibility scene.
@@ -19,8 +20,8 @@ pub(super) struct Backing {
 
 /// Knows what stands behind each triangle of a visibility scene.
 pub(super) trait Behind: Sync {
-    /// What stands behind one of them.
-    fn at(&self, triangle: u32) -> Backing;
+    /// What a ray in some direction meets in one of them: of two surfaces that lie back to back the one that faces it.
+    fn at(&self, triangle: u32, direction: DVec3) -> Backing;
 
     /// The first surface of those that are meshed as one with another.
     fn region(&self, surface: u32) -> u32;
@@ -30,7 +31,7 @@ pub(super) trait Behind: Sync {
 }
 
 impl Behind for Vec<Backing> {
-    fn at(&self, triangle: u32) -> Backing {
+    fn at(&self, triangle: u32, _: DVec3) -> Backing {
         self[triangle as usize]
     }
 
@@ -49,6 +50,8 @@ pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
     frame: Frame,
     regions: OnceLock<Regions>,
+    /// Where surfaces lie back to back, of each the other.
+    backs: OnceLock<FxHashMap<u32, u32>>,
     firsts: Firsts,
 }
 
@@ -89,6 +92,13 @@ impl Firsts {
     }
 }
 
+impl Backing {
+    /// Whether a ray in some direction ends on a side that does not radiate.
+    pub fn is_dark(&self, direction: DVec3) -> bool {
+        self.sides == Sides::Front && self.normal.dot(direction) > 0.0
+    }
+}
+
 impl<'a> Surfaces<'a> {
     pub fn new(scene: &'a Scene, mesh: &Mesh) -> Self {
         let surfaces = scene.surfaces.iter();
@@ -97,14 +107,12 @@ impl<'a> Surfaces<'a> {
             scene,
             frame: mesh.frame,
             regions: OnceLock::new(),
+            backs: OnceLock::new(),
             firsts: Firsts::of(triangles),
         }
     }
-}
 
-impl Behind for Surfaces<'_> {
-    fn at(&self, triangle: u32) -> Backing {
-        let number = self.firsts.surface(triangle);
+    fn backing(&self, number: u32) -> Backing {
         let surface = &self.scene.surfaces[number as usize];
         let at = |v: u32| self.frame.enter(self.scene.vertices[v as usize]);
         let corners = surface.corners.indices();
@@ -115,6 +123,22 @@ impl Behind for Surfaces<'_> {
             sides: surface.sides,
             surface: number,
         }
+    }
+
+    /// The surface that lies back to back with another, if one does.
+    fn back(&self, surface: u32) -> Option<u32> {
+        let found = || back_to_back(&self.scene.surfaces, &self.scene.vertices);
+        self.backs.get_or_init(found).get(&surface).copied()
+    }
+}
+
+impl Behind for Surfaces<'_> {
+    fn at(&self, triangle: u32, direction: DVec3) -> Backing {
+        let number = self.firsts.surface(triangle);
+        let met = self.backing(number);
+        // A ray ends on both, and an engine names any of the two.
+        let back = met.is_dark(direction).then(|| self.back(number)).flatten();
+        back.map_or(met, |back| self.backing(back))
     }
 
     fn region(&self, surface: u32) -> u32 {

@@ -1,9 +1,8 @@
 //! What leaves the scene: cosine-distributed rays from the shooter that meet nothing, or a side that does not radiate.
 
-use super::behind::{Backing, Behind};
+use super::behind::Behind;
 use crate::geometry::{cosine_direction, jitter, lift};
 use crate::radiometry::{Power, Spectrum};
-use crate::scene::Sides;
 use crate::visibility::{Hit, Ray, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,8 +11,8 @@ use std::ops::{AddAssign, Mul};
 
 /// Whether a ray has ended on a side that does not radiate.
 pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &dyn Behind) -> bool {
-    let Backing { normal, sides, .. } = backing.at(hit.triangle);
-    sides == Sides::Front && normal.dot(ray.direction.as_dvec3()) > 0.0
+    let direction = ray.direction.as_dvec3();
+    backing.at(hit.triangle, direction).is_dark(direction)
 }
 
 /// Power that surfaces do not get, W times the square of the frame's scale.

@@ -176,7 +176,7 @@ fn patch_at(
     direction: DVec3,
 ) -> Option<(u32, (f64, f64))> {
     // Those of the region, or of the surface alone where that could not be tiled.
-    let surface = backing.at(triangle).surface;
+    let surface = backing.at(triangle, direction).surface;
     let surfaces = [backing.region(surface), surface].into_iter();
     let patches = surfaces.flat_map(|surface| mesh.patches.of_surface(surface));
     patches

@@ -146,6 +146,23 @@ fn boxes_that_share_an_edge_and_sheets_back_to_back_are_closed() {
     assert_all(&cube(&["f 1 2 3 4", "f 4 3 2 1"]), Sides::Front);
 }
 
+/// Else the back of each would be the front of the other once more. One of five corners is cut in another way when it is turned.
+#[test]
+fn sheets_back_to_back_radiate_from_a_side_each_whatever_the_rule() {
+    let five = "v 3 0 0\nv 5 0 0\nv 6 2 0\nv 4 4 0\nv 3 3 0\nf 9 10 11 12 13\nf 11 10 9 13 12";
+    let text = format!("{CORNERS}f 1 2 3 4\nf 4 3 2 1\nf 5 6 7\n{five}\n");
+    for rule in ["both", "auto"] {
+        let toml = format!("geometry = 'it.obj'\nsides = '{rule}'");
+        let (scene, _) =
+            Files::new(&[("it.obj", text.as_str()), ("scene.toml", &toml)]).accepted("");
+        for surface in &scene.surfaces {
+            let is_single = surface.polygon == 2;
+            let expected = if is_single { Sides::Both } else { Sides::Front };
+            assert_eq!(surface.sides, expected, "{rule}: {surface:?}");
+        }
+    }
+}
+
 #[test]
 fn settings_come_before_the_shape_and_materials_before_the_scene() {
     let text = format!(

@@ -96,3 +96,26 @@ fn nothing_escapes_from_a_closed_room() {
         assert!(power.residual.abs() <= 0.005 * power.emitted, "{power:?}");
     }
 }
+
+/// A ray that ends on both of two sheets is named any of them, also the one that looks away.
+#[test]
+fn nothing_is_lost_on_sheets_that_lie_back_to_back() {
+    let mut scene = empty();
+    let grey = add_grey(&mut scene, 0.5, 1.0);
+    let sheet = add_grey(&mut scene, 0.5, 0.0);
+    add_cuboid(&mut scene, grey, [DVec3::ZERO, DVec3::ONE], true);
+    for upwards in [true, false] {
+        add_level(&mut scene, sheet, [[0.2, 0.2], [0.8, 0.8]], 0.5, upwards);
+    }
+    for engine in engines() {
+        for cluster_from in [usize::MAX, 0] {
+            let options = Options {
+                cluster_from,
+                ..draft()
+            };
+            let power = solved_by(&scene, options, engine, 0).report.power;
+            assert_eq!(power.escaped, 0.0, "by {engine}");
+            assert!(power.residual.abs() <= 0.02 * power.emitted, "{power:?}");
+        }
+    }
+}
