@@ -12,7 +12,7 @@
 //!    agree (`hidden`), or rays are traced where there is too much to cut (`rays`).
 //! 4. `enforce` closes the balance on demand, `balance` solves for radiosity.
 //!
-//! Imports `geometry`, `radiometry`, `scene`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
+//! Imports `geometry`, `radiometry`, `scene`, `threads`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
 
 mod balance;
 mod body;

@@ -1,7 +1,7 @@
 //! Progressive radiosity: choose a patch, shoot its unshot radiosity, refine where it falls, until little is left.
 //!
-//! The solver does no I/O and prints nothing; it speaks to an [`Observer`]. Imports `geometry`, `radiometry`, `mesh`,
-//! `form_factor` and the visibility trait.
+//! The solver does no I/O and prints nothing; it speaks to an [`Observer`]. Imports `geometry`, `radiometry`, `scene`,
+//! `mesh`, `form_factor` and the visibility trait.
 
 mod arrived;
 mod audit;

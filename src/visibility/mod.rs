@@ -2,7 +2,7 @@
 //!
 //! One trait, three engines: `embree` (packets of occlusion rays through our own FFI crate), `bvh`
 //! (pure Rust over obvhs) and `brute_force` (every triangle, in double precision: the reference).
-//! Visibility knows triangles and nothing of patches or light. Imports `geometry` and `simd`.
+//! Visibility knows triangles and nothing of patches or light. Imports `simd` only.
 //!
 //! [`build`] chooses an engine by a fixed rule and hands it the triangles. All engines agree on what
 //! is asked: an open segment, either side of a triangle, an edge or corner counts as hit, and what

@@ -64,7 +64,7 @@ const BREAKING: [(&str, &str, &str, usize); 16] = [
     (
         "imports",
         "src/visibility/a.rs",
-        "use crate::{geometry::Frame, mesh::{Mesh, Patch}};",
+        "use crate::{simd::Isa, mesh::{Mesh, Patch}};",
         1,
     ),
     (

@@ -67,7 +67,7 @@ const IMPORTS: [(&str, &[&str]); 17] = [
     ("simd", &[]),
     ("threads", &[]),
     ("scene", &["codec", "geometry", "radiometry"]),
-    ("visibility", &["geometry", "simd"]),
+    ("visibility", &["simd"]),
     (
         "form_factor",
         &["geometry", "radiometry", "simd", "visibility"],
