@@ -73,8 +73,6 @@ pub struct Certificate {
     pub row_errors: Vec<f64>,
     /// Entries (row, column; from 0) that are less accurate than asked.
     pub limited: Vec<[u32; 2]>,
-    /// Largest |A_i F_ij - A_j F_ji| / max(A_i, A_j): each pair is worked out as one number for both directions, so this is 0 but for rounding.
-    pub reciprocity_residual: f64,
     /// Share of the flux of all rows, in proportion to their area, that escapes.
     pub escaped: f64,
     /// For each row the share of its surfaces that nothing can reach, since something stands on it or it lies within a solid: it counts
@@ -94,7 +92,6 @@ impl Certificate {
             row_sums: Vec::with_capacity(areas.len()),
             row_errors: Vec::with_capacity(areas.len()),
             limited: Vec::new(),
-            reciprocity_residual: 0.0,
             escaped: 0.0,
             covered: enclosure.rows().iter().map(Row::covered_share).collect(),
             pairs: Tally::default(),
