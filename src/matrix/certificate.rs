@@ -37,20 +37,6 @@ impl Tally {
         };
         *slot += 1;
     }
-
-    /// Counts each pair once where it was worked out with both of its rows.
-    pub(super) fn halve(&mut self) {
-        for count in [
-            &mut self.nothing,
-            &mut self.unhindered,
-            &mut self.cut,
-            &mut self.sampled,
-            &mut self.limited,
-            &mut self.rays,
-        ] {
-            *count /= 2;
-        }
-    }
 }
 
 impl AddAssign for Tally {

@@ -233,7 +233,6 @@ impl Enclosure {
                 certificate.pairs += work.tally;
             }
         }
-        certificate.pairs.halve();
         Ok(certificate)
     }
 
@@ -291,7 +290,6 @@ impl Enclosure {
             limited: Vec::new(),
             tally: Tally::default(),
         };
-        let rays_before = worker.rays;
         for i in self.rows.of_row[row].clone() {
             let from = if once { i + 1 } else { 0 };
             let Space {
@@ -301,16 +299,23 @@ impl Enclosure {
                 ..
             } = &self.space;
             tree.each_partner(&facets[i as usize], occluders, from, &mut |j, near| {
-                if j != i {
-                    let column = self.row_of(j);
-                    let twice = once && column == row;
-                    work.add(column, worker.exchange(i, j, near), twice);
+                let column = self.row_of(j);
+                let within = column == row;
+                // A pair within the row has one error, which counts for both of its directions: it is met from its first facet only.
+                if j == i || (within && j < i) {
+                    return;
                 }
+                let rays_before = worker.rays;
+                let exchange = worker.exchange(i, j, near);
+                if i < j {
+                    work.tally.count(exchange.kind);
+                    work.tally.rays += worker.rays - rays_before;
+                }
+                work.add(column, exchange, within);
             });
         }
         work.limited.sort_unstable();
         work.limited.dedup();
-        work.tally.rays = worker.rays - rays_before;
         work
     }
 
@@ -330,7 +335,6 @@ impl Work {
     fn add(&mut self, column: usize, exchange: Exchange, twice: bool) {
         let times = if twice { 2.0 } else { 1.0 };
         self.amounts[column - self.first] += times * exchange.amount;
-        self.tally.count(exchange.kind);
         if !matches!(exchange.kind, Kind::Nothing | Kind::Unhindered) {
             self.errors.push((column as u32, times * exchange.error));
         }
