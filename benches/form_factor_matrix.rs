@@ -22,10 +22,10 @@ use std::time::Instant;
 const ROUNDS: usize = 3;
 
 /// Largest areas (m²) that give 168, 908 and 3,837 rows or nearly so.
-const AREAS: [f64; 3] = [0.0165, 0.00252, 0.00058];
+const AREAS: [f64; 3] = [0.0165, 0.002522, 0.00058];
 
 /// Largest areas for growth: up to just below 20,000 rows.
-const FINER: [f64; 5] = [0.0165, 0.00252, 0.00058, 0.00021, 0.000113];
+const FINER: [f64; 5] = [0.0165, 0.002522, 0.00058, 0.0002101, 0.0001132];
 
 /// The largest area of the parts of a room of 1 m, for 40,560 of them.
 const STREAMED: f64 = 1.0 / 82.0 / 82.0;

@@ -11,6 +11,9 @@ const MOST_PARTS: f64 = 1e6;
 /// Most pieces of surfaces, of which all pairs are worked out.
 const MOST_PIECES: u64 = 200_000;
 
+/// Areas differ by this share from what they are meant to be, as files round their coordinates.
+const ROUNDING: f64 = 1e-6;
+
 /// Refuses what would take days: too many surfaces, or parts of no more than `max_area` (m²).
 pub(super) fn check_count(scene: &Scene, max_area: Option<f64>) -> Result<(), MatrixError> {
     let unit = scene.metres_per_unit.powi(2);
@@ -18,7 +21,14 @@ pub(super) fn check_count(scene: &Scene, max_area: Option<f64>) -> Result<(), Ma
         Some(area) => (area / unit, ": ask for a larger max-area"),
         None => (f64::INFINITY, ""),
     };
-    let parts = |surface: &Surface| (area(scene, surface) / limit).clamp(1.0, MOST_PARTS) as u64;
+    let parts = |surface: &Surface| match *corners(scene, surface) {
+        [a, b, c] => u64::from(steps([a, b, c], limit)).pow(2),
+        [a, b, c, d] => {
+            let [columns, rows] = grid([a, b, c, d], limit).map(u64::from);
+            columns * rows
+        }
+        _ => 0,
+    };
     let pieces = scene.surfaces.iter().map(parts).sum();
     match pieces <= MOST_PIECES {
         true => Ok(()),
@@ -30,10 +40,9 @@ pub(super) fn check_count(scene: &Scene, max_area: Option<f64>) -> Result<(), Ma
     }
 }
 
-fn area(scene: &Scene, surface: &Surface) -> f64 {
+fn corners(scene: &Scene, surface: &Surface) -> Vec<DVec3> {
     let corners = surface.corners.indices().iter();
-    let corners: Vec<DVec3> = corners.map(|v| scene.vertices[*v as usize]).collect();
-    polygon::vector_area(&corners).length()
+    corners.map(|v| scene.vertices[*v as usize]).collect()
 }
 
 /// Divides quads into grids and triangles into similar triangles, row by row from the first corner, until no part is larger than
@@ -44,12 +53,9 @@ pub(super) fn divided(scene: &Scene, max_area: f64) -> Scene {
         ..scene.clone()
     };
     for surface in &scene.surfaces {
-        let corners = surface.corners.indices().iter();
-        let corners: Vec<DVec3> = corners.map(|v| scene.vertices[*v as usize]).collect();
-        let pieces = (polygon::vector_area(&corners).length() / max_area).clamp(1.0, MOST_PARTS);
-        match *corners {
-            [a, b, c] => triangle(&mut parts, surface, [a, b, c], pieces),
-            [a, b, c, d] => quad(&mut parts, surface, [a, b, c, d], pieces),
+        match *corners(scene, surface) {
+            [a, b, c] => triangle(&mut parts, surface, [a, b, c], max_area),
+            [a, b, c, d] => quad(&mut parts, surface, [a, b, c, d], max_area),
             _ => {}
         }
     }
@@ -58,19 +64,57 @@ pub(super) fn divided(scene: &Scene, max_area: f64) -> Scene {
 
 /// Rounds up, but not for what rounding added.
 fn at_least(count: f64) -> u32 {
-    (count - 1e-9).ceil().max(1.0) as u32
+    (count * (1.0 - ROUNDING)).ceil().max(1.0) as u32
 }
 
-fn quad(scene: &mut Scene, surface: &Surface, [a, b, c, d]: [DVec3; 4], pieces: f64) {
-    if pieces <= 1.0 {
+/// How many parts of no more than `max_area` make up an area.
+fn pieces(area: f64, max_area: f64) -> f64 {
+    (area / max_area).clamp(1.0, MOST_PARTS)
+}
+
+/// Columns and rows of a quad: cells about as wide as high, the largest no larger than `max_area`.
+fn grid([a, b, c, d]: [DVec3; 4], max_area: f64) -> [u32; 2] {
+    let width = 0.5 * (a.distance(b) + c.distance(d));
+    let height = 0.5 * (b.distance(c) + d.distance(a));
+    // What a cell at a corner would have were the quad a parallelogram with that corner: in between area changes linearly.
+    let at_corners = [[d, a, b], [a, b, c], [c, d, a], [b, c, d]]
+        .map(|[before, corner, after]| (after - corner).cross(before - corner).length());
+    let mut pieces = pieces(polygon::vector_area(&[a, b, c, d]).length(), max_area);
+    loop {
+        // A quad longer than its parts together are wide is cut across only.
+        let columns = (pieces * width / height).sqrt().round();
+        let columns = columns.clamp(1.0, f64::from(at_least(pieces)));
+        let grid = [columns as u32, at_least(pieces / columns)];
+        let largest = largest_cell(at_corners, grid);
+        if largest <= max_area * (1.0 + 2.0 * ROUNDING) || pieces >= MOST_PARTS {
+            return grid;
+        }
+        let made = f64::from(grid[0]) * f64::from(grid[1]);
+        pieces = (made * (largest / max_area).max(1.01)).min(MOST_PARTS);
+    }
+}
+
+/// The area of the largest cell of a grid, which lies at a corner; the corners are those of the first row, then of the last.
+fn largest_cell([first, first_end, last, last_end]: [f64; 4], grid: [u32; 2]) -> f64 {
+    let [columns, rows] = grid.map(f64::from);
+    let (u, v) = (0.5 / columns, 0.5 / rows);
+    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    let at = |u: f64, v: f64| mix(mix(first, first_end, u), mix(last, last_end, u), v);
+    let cells = [
+        at(u, v),
+        at(1.0 - u, v),
+        at(u, 1.0 - v),
+        at(1.0 - u, 1.0 - v),
+    ];
+    cells.into_iter().fold(0.0, f64::max) / (columns * rows)
+}
+
+fn quad(scene: &mut Scene, surface: &Surface, [a, b, c, d]: [DVec3; 4], max_area: f64) {
+    let [columns, rows] = grid([a, b, c, d], max_area);
+    if columns * rows == 1 {
         scene.surfaces.push(*surface);
         return;
     }
-    let width = 0.5 * (a.distance(b) + c.distance(d));
-    let height = 0.5 * (b.distance(c) + d.distance(a));
-    // The grid with the fewest cells whose cells are the squarest.
-    let columns = (pieces * width / height).sqrt().round().max(1.0);
-    let (columns, rows) = (columns as u32, at_least(pieces / columns));
     let first = scene.vertices.len() as u32;
     for row in 0..=rows {
         let v = f64::from(row) / f64::from(rows);
@@ -91,12 +135,18 @@ fn quad(scene: &mut Scene, surface: &Surface, [a, b, c, d]: [DVec3; 4], pieces: 
     }
 }
 
-fn triangle(scene: &mut Scene, surface: &Surface, [a, b, c]: [DVec3; 3], pieces: f64) {
-    if pieces <= 1.0 {
+/// Along each side of a triangle.
+fn steps([a, b, c]: [DVec3; 3], max_area: f64) -> u32 {
+    let area = 0.5 * (b - a).cross(c - a).length();
+    at_least(pieces(area, max_area).sqrt())
+}
+
+fn triangle(scene: &mut Scene, surface: &Surface, [a, b, c]: [DVec3; 3], max_area: f64) {
+    let steps = steps([a, b, c], max_area);
+    if steps == 1 {
         scene.surfaces.push(*surface);
         return;
     }
-    let steps = at_least(pieces.sqrt());
     let mut vertex = |u: u32, v: u32| {
         let [u, v] = [u, v].map(|x| f64::from(x) / f64::from(steps));
         scene.vertices.push(a + (b - a) * u + (c - a) * v);

@@ -125,6 +125,49 @@ fn parts_are_no_larger_than_asked_and_numbered() {
 }
 
 #[test]
+fn a_strip_is_cut_across_only_wherever_its_corners_begin() {
+    let obj = "v 0 0 0\nv 1000 0 0\nv 1000 1 0\nv 0 1 0\nv 0 0 1\nv 1000 0 1\nv 1000 1 1\nv 0 1 1\n\
+        o long\nf 1 2 3 4\no short\nf 6 7 8 5\n";
+    let options = Options {
+        max_area: Some(500.0),
+        ..portable()
+    };
+    let found = rows(&load("", obj), options);
+    assert_eq!(labels(&found), ["long/1", "long/2", "short/1", "short/2"]);
+}
+
+/// Cells of a grid are alike in its coordinates, not in area.
+#[test]
+fn no_part_of_a_quad_that_is_no_parallelogram_is_larger_than_asked() {
+    let obj = "v 0 0 0\nv 1.4 0 0\nv 0.8 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    let options = Options {
+        max_area: Some(0.3),
+        ..portable()
+    };
+    let found = rows(&load("", obj), options);
+    let sum = found.iter().map(|row| row.area).sum();
+    close(sum, 1.1, 1e-12, "area of the trapezoid");
+    for row in &found {
+        assert!(row.area < 0.3001, "{}: {}", row.label, row.area);
+    }
+}
+
+#[test]
+fn as_many_parts_are_counted_as_would_be_made() {
+    let triangle = load("", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let options = Options {
+        max_area: Some(0.5 / 300_000.0),
+        ..portable()
+    };
+    let refused = Enclosure::new(&triangle, &options);
+    let made = 548 * 548;
+    assert!(
+        matches!(refused, Err(MatrixError::TooLarge { pieces, .. }) if pieces == made),
+        "{refused:?}"
+    );
+}
+
+#[test]
 fn a_polygon_of_many_corners_is_one_row() {
     let mut obj = String::new();
     for k in 0..12 {
