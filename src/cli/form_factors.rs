@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     /// The matrix: .csv (dense table), .npz (NumPy) or .mtx (sparse, Matrix Market); what is known of its accuracy goes beside it, into FILE.certificate.json (without FILE's own ending)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// What a row stands for: surface (a polygon, or a part of it), group (below one g or o) or material
+    /// What a row stands for: surface (a polygon, or a part of it), group (below one g, o or name of a glTF node) or material
     #[arg(long, default_value = "surface", value_parser = named::<By>)]
     by: By,
     /// Divide surfaces until no part is larger (m²)

@@ -10,9 +10,9 @@ pub enum By {
     /// A side of a polygon of the file, or of a part of it where [`Options::max_area`] divides it.
     #[default]
     Surface,
-    /// All sides of the polygons below one `g` or `o` line, front and back apart; polygons without one are rows of their own.
+    /// All sides of the polygons below one `g` or `o` name, or in glTF nodes of one name, front and back apart; polygons without one are rows of their own.
     Group,
-    /// All sides with one material, front and back apart.
+    /// All sides with materials of one name, front and back apart.
     Material,
 }
 

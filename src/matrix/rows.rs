@@ -8,14 +8,15 @@ use crate::geometry::Frame;
 use crate::mesh::{Regions, split_at_contacts};
 use crate::radiometry::{Power, exitance_from_radiance};
 use crate::scene::{NamedScene, Names, Scene, Sides, Surface};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 
 /// A row, and a column, of a matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Unique within the matrix: the name of the group or material, with the number of the polygon in it where there are several,
-    /// `/` and the number of the part where it is divided, and ` back` for the back of a two-sided surface.
+    /// `/` and the number of the part where it is divided, and ` back` for the back of a two-sided surface. `'` follows where the file has that
+    /// name for something else.
     pub label: String,
     /// Area of its radiating sides, m², less what is covered.
     pub area: f64,
@@ -144,6 +145,12 @@ impl Rows {
 
 /// The key of every cell.
 fn keys(cells: &Scene, names: &Names, options: &Options) -> Vec<Key> {
+    // What a texture colours differently is one material all the same.
+    let mut first_of_name: FxHashMap<&str, u32> = FxHashMap::default();
+    let named: Vec<u32> = (0..)
+        .zip(&cells.materials)
+        .map(|(number, material)| *first_of_name.entry(&material.name).or_insert(number))
+        .collect();
     let mut last = None;
     let mut part = 0;
     let key = |surface: &Surface| {
@@ -153,7 +160,7 @@ fn keys(cells: &Scene, names: &Names, options: &Options) -> Vec<Key> {
         };
         last = Some(surface.polygon);
         match (options.by, names.group_of.get(surface.polygon as usize)) {
-            (By::Material, _) => Key::Material(surface.material),
+            (By::Material, _) => Key::Material(named[surface.material as usize]),
             (By::Group, Some(Some(group))) => Key::Group(*group),
             (By::Group, _) => Key::Part {
                 polygon: surface.polygon,
@@ -249,6 +256,7 @@ fn labels(drafts: &[Draft], scene: &Scene, names: &Names, options: &Options) -> 
             *count = (*count).max(part + 1);
         }
     }
+    let mut taken: FxHashSet<String> = FxHashSet::default();
     let label = |draft: &Draft| {
         let mut label = match draft.key {
             Key::Material(material) => scene.materials[material as usize].name.clone(),
@@ -272,6 +280,10 @@ fn labels(drafts: &[Draft], scene: &Scene, names: &Names, options: &Options) -> 
         };
         if draft.back {
             label += " back";
+        }
+        // A name in the file may be what another row is called here.
+        while !taken.insert(label.clone()) {
+            label.push('\'');
         }
         label
     };

@@ -17,7 +17,7 @@ pub struct NamedScene {
 pub struct Names {
     /// The file with the polygons.
     pub file: PathBuf,
-    /// The names that `g` and `o` lines give, each once.
+    /// The names that `g` and `o` lines, or nodes, give, each once.
     pub groups: Vec<String>,
     /// For every input polygon the last of them before it; indexed by [`Surface::polygon`](super::Surface::polygon).
     pub group_of: Vec<Option<u32>>,

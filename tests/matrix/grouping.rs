@@ -1,8 +1,10 @@
 //! What rows stand for: names, sides, parts.
 
 use crate::setup::{close, portable};
+use radiosity::codec::{base64, encode_png};
 use radiosity::matrix::{By, Enclosure, MatrixError, Options, Row};
 use radiosity::scene::NamedScene;
+use serde_json::{Value, json};
 use std::fs;
 
 const OBJ: &str = "mtllib m.mtl\n\
@@ -87,6 +89,66 @@ fn groups_and_materials_collect_surfaces() {
     );
     assert_eq!(labels(&materials), ["plain", "sheet"]);
     close(materials[0].reflectance.x, 0.5, 1e-7, "reflectance");
+}
+
+/// Two triangles of 0.5 m² and 2 m², each a node `chair` with the material `wood`, over the white and over the black half of its texture.
+fn chairs() -> Value {
+    let mut bytes = Vec::new();
+    bytes.extend([0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes));
+    bytes.extend([0.25f32, 0.5].repeat(3).into_iter().map(f32::to_le_bytes));
+    bytes.extend([0.75f32, 0.5].repeat(3).into_iter().map(f32::to_le_bytes));
+    let mut halves = Vec::new();
+    encode_png(&mut halves, 2, 1, &[[255; 3], [0; 3]]).expect("memory can be written to");
+    let uri = |bytes: &[u8]| format!("data:;base64,{}", base64(bytes));
+    let mesh = |half: u32| json!({ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": half }, "material": 0 }] });
+    json!({
+        "asset": { "version": "2.0" },
+        "nodes": [
+            { "name": "chair", "mesh": 0 },
+            { "name": "chair", "mesh": 1, "translation": [0, 0, 1], "scale": [2, 2, 1] },
+        ],
+        "meshes": [mesh(1), mesh(2)],
+        "materials": [{ "name": "wood", "pbrMetallicRoughness": {
+            "baseColorFactor": [0.8, 0.8, 0.8, 1.0], "baseColorTexture": { "index": 0 },
+        } }],
+        "textures": [{ "source": 0 }],
+        "images": [{ "uri": uri(&halves) }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] },
+            { "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2" },
+            { "bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 36 },
+            { "buffer": 0, "byteOffset": 36, "byteLength": 24 },
+            { "buffer": 0, "byteOffset": 60, "byteLength": 24 },
+        ],
+        "buffers": [{ "byteLength": 84, "uri": uri(bytes.as_flattened()) }],
+    })
+}
+
+#[test]
+fn what_has_one_name_in_a_gltf_file_is_one_row_with_the_mean_of_its_colours() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let path = folder.path().join("it.gltf");
+    fs::write(&path, chairs().to_string()).expect("can be written");
+    let named = NamedScene::load(&path).expect("is a scene");
+    assert_eq!(named.scene.materials.len(), 2, "one for each colour");
+    let by = |by: By| rows(&named, Options { by, ..portable() });
+    assert_eq!(labels(&by(By::Surface)), ["chair:1", "chair:2"]);
+    for (name, found) in [("chair", by(By::Group)), ("wood", by(By::Material))] {
+        assert_eq!(labels(&found), [name]);
+        close(found[0].area, 2.5, 1e-12, "area");
+        close(found[0].reflectance.x, 0.8 * 0.5 / 2.5, 1e-7, "reflectance");
+    }
+}
+
+#[test]
+fn names_that_look_like_those_of_other_rows_are_told_apart() {
+    let sheets = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\no lid back\nf 1 2 3\no lid\nf 4 5 6\n";
+    let found = rows(&load("sides = \"both\"\n", sheets), portable());
+    let expected = ["lid back", "lid back back", "lid", "lid back'"];
+    assert_eq!(labels(&found), expected);
 }
 
 #[test]

@@ -24,6 +24,7 @@ use glam::DVec3;
 use lights::Lights;
 use materials::Palette;
 use nodes::Placed;
+use rustc_hash::FxHashMap;
 use std::path::Path;
 
 /// Reads a glTF file.
@@ -41,6 +42,8 @@ pub(super) fn read(
         welder: Welder::default(),
         palette: Palette::new(&file),
         noticed: Noticed::default(),
+        current_group: None,
+        group_numbers: FxHashMap::default(),
     };
     for node in &placed {
         building.mesh(node)?;
@@ -71,21 +74,26 @@ struct Building<'a> {
     welder: Welder,
     palette: Palette<'a>,
     noticed: Noticed,
+    current_group: Option<u32>,
+    group_numbers: FxHashMap<String, u32>,
 }
 
 impl Building<'_> {
     /// Adds a polygon of the group that was begun last.
     fn push(&mut self, corners: impl IntoIterator<Item = u32>, material: u32) {
         self.geometry.polygons.push(corners, material);
-        let group = self.geometry.groups.len().checked_sub(1);
-        self.geometry.group_of.push(group.map(|g| g as u32));
+        self.geometry.group_of.push(self.current_group);
     }
 
-    /// Begins a group.
+    /// Begins a group, or goes on with that of the same name.
     fn group(&mut self, name: Option<&str>) {
-        let number = self.geometry.groups.len() + 1;
-        let name = name.map_or_else(|| format!("node {number}"), str::to_owned);
-        self.geometry.groups.push(name);
+        let next = self.geometry.groups.len() as u32;
+        let name = name.map_or_else(|| format!("node {}", next + 1), str::to_owned);
+        let number = *self.group_numbers.entry(name.clone()).or_insert(next);
+        if number == next {
+            self.geometry.groups.push(name);
+        }
+        self.current_group = Some(number);
     }
 
     fn mesh(&mut self, placed: &Placed) -> Result<(), SceneError> {
