@@ -1,6 +1,6 @@
 //! From a path to a [`Scene`]: finds the files, reads them in order and puts together what they say.
 
-use super::geometry::{self, ENDINGS, Format, Geometry, Reading};
+use super::geometry::{self, ENDINGS, Format, Reading};
 use super::settings::{self, Settings, SidesRule, UpAxis};
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
@@ -147,12 +147,12 @@ fn assemble(
     if up == UpAxis::Z {
         geometry.turn_up(UpAxis::turned);
     }
-    let Geometry {
-        polygons, library, ..
-    } = &geometry;
-    let materials = materials::decide(library, settings)?;
+    let library = &geometry.library;
+    let mut materials = materials::decide(library, settings)?;
     materials::warn_of_defaults(path, library, settings.map(|(_, s)| s), &mut warnings);
     materials::warn_of_perfect(path, &materials, &mut warnings);
+    sides::shine_from_both(&mut geometry, &mut materials);
+    let polygons = &geometry.polygons;
 
     // Split what is not a triangle or a convex planar quad, and decide which sides radiate.
     let repeated = duplicates::find(polygons);

@@ -23,6 +23,8 @@ const ROUNDED_ONE: f32 = 1.0 + 1e-6;
 pub(super) struct Materials {
     pub list: Vec<Material>,
     pub sides: Vec<SidesRule>,
+    /// Emitters that the file calls double-sided.
+    pub shining: Vec<u32>,
     /// Names of those that were to reflect everything.
     perfect: Vec<String>,
 }
@@ -39,9 +41,10 @@ pub(super) fn decide(
     let mut materials = Materials {
         list: Vec::new(),
         sides: Vec::new(),
+        shining: Vec::new(),
         perfect: Vec::new(),
     };
-    for entry in &library.entries {
+    for (number, entry) in (0..).zip(&library.entries) {
         let over =
             settings.and_then(|(file, s)| Some((file, s.material.get(&entry.name)?.get_ref())));
         let rule = over.and_then(|(_, material)| material.sides);
@@ -51,9 +54,16 @@ pub(super) fn decide(
         if perfect && !materials.perfect.contains(&name) {
             materials.perfect.push(name);
         }
+        let rule = match rule.or(scene_rule) {
+            None | Some(SidesRule::Auto) => entry.sides.unwrap_or(SidesRule::Auto),
+            Some(rule) => rule,
+        };
+        let both = (entry.sides, rule) == (Some(SidesRule::Both), SidesRule::Both);
+        if both && material.emits() {
+            materials.shining.push(number);
+        }
         materials.list.push(material);
-        let rule = rule.or(scene_rule).or(entry.sides);
-        materials.sides.push(rule.unwrap_or(SidesRule::Auto));
+        materials.sides.push(rule);
     }
     Ok(materials)
 }

@@ -39,9 +39,9 @@
 //!
 //! By the standard glTF is in metres with y up; emission is luminance in cd/m², which becomes radiance at 179 lm/W
 //! ([`WHITE_EFFICACY`](crate::radiometry::WHITE_EFFICACY)). The base colour is the reflectance; under a texture, its mean over each
-//! polygon. `doubleSided` materials radiate from both sides, others from the front; double-sided emitters that are not the skin of a
-//! solid shine from both sides. Perspective cameras are taken over unless the scene file has some. Lights without a
-//! surface (`KHR_lights_punctual`) are refused, unless `point_light_radius` (in scene units) asks for spheres of the same
+//! polygon. `doubleSided` materials radiate from both sides, others from the front; double-sided emitters (of the file or of the
+//! `scene.toml`) that are not the skin of a solid shine from both sides unless `sides = "front"`: each becomes two surfaces back
+//! to back. Perspective cameras are taken over unless the scene file has some. Lights without a surface (`KHR_lights_punctual`) are refused, unless `point_light_radius` (in scene units) asks for spheres of the same
 //! flux in the place of points, and squares of the same intensity along the axis in that of spots; 0 leaves them out.
 //! Consecutive triangles that make a flat, convex quad are one polygon, as exporters cut quads in two. Metals are taken as
 //! diffuse, transparent materials as opaque.
@@ -50,9 +50,10 @@
 //!
 //! # Sides
 //!
-//! `auto` makes closed, consistently oriented sets of polygons radiate from the front, all others from both
-//! sides; so do, with a warning, closed sets that face inwards although nothing stands in them, nor do they shine, nor are they all
-//! there is: solids that are inside out. Emitted light leaves the front in every case.
+//! `auto` goes by what the file says of a material, as glTF does (`doubleSided`). Where the file says nothing it makes closed,
+//! consistently oriented sets of polygons radiate from the front, all others from both sides; so do, with a warning,
+//! closed sets that face inwards although nothing stands in them, nor do they shine, nor are they all there is: solids that are inside
+//! out. Emitted light leaves the front, but for glTF's double-sided emitters.
 //!
 //! # Polygons
 //!

@@ -7,10 +7,11 @@
 //! an edge, or where a sheet is modelled as two coincident faces back to back. Of such two each radiates from its front, whatever the rule.
 
 use super::backs::back_to_back;
-use super::inside_out;
+use super::geometry::Geometry;
+use super::materials::Materials;
 use super::polygons::Polygons;
 use super::settings::SidesRule;
-use super::{Sides, Surface};
+use super::{Sides, Surface, duplicates, inside_out};
 use crate::geometry::Sets;
 use rayon::slice::ParallelSliceMut;
 
@@ -46,6 +47,28 @@ pub(super) fn decide(
         inside_out[*polygon] && !repeated[*polygon] && rule(*polygon) == SidesRule::Auto
     };
     (0..inside_out.len()).filter(decided).collect()
+}
+
+/// Light leaves the front of a polygon; a double-sided emitter that is not the skin of a solid becomes two, back to back.
+pub(super) fn shine_from_both(geometry: &mut Geometry, materials: &mut Materials) {
+    if materials.shining.is_empty() {
+        return;
+    }
+    let polygons = &mut geometry.polygons;
+    let repeated = duplicates::find(polygons);
+    let bodies = Bodies::new(polygons, &repeated);
+    for (polygon, repeated) in repeated.iter().enumerate() {
+        let material = polygons.materials[polygon];
+        let shines = materials.shining.contains(&material);
+        if shines && !bodies.is_closed(polygon as u32) && !repeated {
+            let back: Vec<u32> = polygons.corners(polygon).iter().rev().copied().collect();
+            polygons.push(back, material);
+            geometry.group_of.push(geometry.group_of[polygon]);
+        }
+    }
+    for material in &materials.shining {
+        materials.sides[*material as usize] = SidesRule::Front;
+    }
 }
 
 /// For each polygon whether it is the skin of a solid or room, as its front says; and whether of a solid that is inside out.

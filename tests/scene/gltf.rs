@@ -54,7 +54,7 @@ pub fn files(document: &Value) -> Files {
     Files::new(&[("it.gltf", document.to_string())])
 }
 
-fn load(document: &Value) -> (Scene, Vec<String>) {
+pub fn load(document: &Value) -> (Scene, Vec<String>) {
     files(document).accepted("it.gltf")
 }
 
@@ -85,36 +85,6 @@ fn nodes_move_turn_and_mirror() {
     assert!(low.distance(DVec3::new(7.0, 0.0, 0.0)) < 1e-6, "{low}");
     assert!(high.distance(DVec3::new(10.0, 2.0, 0.0)) < 1e-6, "{high}");
     assert!(scene.normal(&scene.surfaces[0]).distance(DVec3::NEG_Z) < 1e-9);
-}
-
-#[test]
-fn emission_is_in_candela_and_both_sides_of_a_double_sided_sheet_shine() {
-    let mut document = square();
-    document["extensionsUsed"] = json!(["KHR_materials_emissive_strength"]);
-    document["materials"][0]["emissiveFactor"] = json!([1.0, 0.5, 0.25]);
-    document["materials"][0]["extensions"] =
-        json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 1790.0 } });
-    let (scene, _) = load(&document);
-    let radiance = scene.materials[0].emitted_radiance;
-    assert!(
-        radiance.distance(Vec3::new(10.0, 5.0, 2.5)) < 1e-5,
-        "{radiance}"
-    );
-    assert_eq!(scene.surfaces.len(), 1);
-
-    document["materials"][0]["doubleSided"] = json!(true);
-    let (scene, _) = load(&document);
-    assert_eq!(scene.surfaces.len(), 2);
-    let normals = [0, 1].map(|side| scene.normal(&scene.surfaces[side]));
-    assert_eq!(normals, [DVec3::Z, DVec3::NEG_Z]);
-    assert!(scene.surfaces.iter().all(|s| s.sides == Sides::Front));
-
-    document["materials"][0]["emissiveFactor"] = json!([0, 0, 0]);
-    let (scene, _) = load(&document);
-    assert_eq!(
-        (scene.surfaces.len(), scene.surfaces[0].sides),
-        (1, Sides::Both)
-    );
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod bundled;
 mod formats;
 mod gltf;
 mod gltf_refused;
+mod gltf_sides;
 mod mutations;
 mod ply;
 mod refused;

@@ -26,8 +26,6 @@ pub(super) struct Palette<'a> {
     entries: Vec<Entry>,
     known: FxHashMap<Key, u32>,
     textures: FxHashMap<usize, Option<Texture>>,
-    /// Double-sided emitters.
-    shining: Vec<u32>,
     default: Option<usize>,
     transparent: usize,
     unreadable: Vec<String>,
@@ -40,7 +38,6 @@ impl<'a> Palette<'a> {
             entries: Vec::new(),
             known: FxHashMap::default(),
             textures: FxHashMap::default(),
-            shining: Vec::new(),
             default: None,
             transparent: 0,
             unreadable: Vec::new(),
@@ -116,10 +113,6 @@ impl<'a> Palette<'a> {
         let emissive = DVec3::from(material.emissive_factor().map(f64::from)) * strength;
         let reflectance = self.stated(DVec3::from([r, g, b].map(f64::from)) * base);
         let radiance = self.stated(watts(emissive * emission));
-        let shines = radiance.channels.max_element() > 0.0;
-        if shines && material.double_sided() {
-            self.shining.push(number);
-        }
         let name = material.name().map(str::to_owned);
         self.entries.push(Entry {
             sides: Some(match material.double_sided() {
@@ -164,9 +157,8 @@ impl<'a> Palette<'a> {
         }
     }
 
-    /// The library, and the materials of double-sided emitters.
-    pub fn finish(self) -> (Library, Vec<u32>) {
-        (Library::new(self.entries, self.default), self.shining)
+    pub fn finish(self) -> Library {
+        Library::new(self.entries, self.default)
     }
 }
 

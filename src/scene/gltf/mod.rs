@@ -14,10 +14,9 @@ mod nodes;
 mod primitives;
 mod texture;
 
+use super::SceneError;
 use super::geometry::{Geometry, Reading};
-use super::settings::SidesRule;
 use super::weld::Welder;
-use super::{SceneError, duplicates, sides};
 use crate::radiometry::WHITE_EFFICACY;
 use file::File;
 use glam::DVec3;
@@ -60,10 +59,8 @@ pub(super) fn read(
     noticed.report(path, warnings);
     palette.report(path, warnings);
     geometry.polygons.positions = welder.into_positions();
-    let (library, shining) = palette.finish();
-    geometry.library = library;
+    geometry.library = palette.finish();
     geometry.cameras = cameras;
-    shine_from_both_sides(&mut geometry, &shining);
     Ok(geometry)
 }
 
@@ -145,28 +142,6 @@ impl Noticed {
 fn warn(warnings: &mut Vec<String>, path: &Path, count: usize, what: &str) {
     if count > 0 {
         warnings.push(format!("{}: {count} {what}", path.display()));
-    }
-}
-
-/// Light leaves the front of a polygon; a double-sided emitter that is not the skin of a solid becomes two, back to back.
-/// `shining` are the materials of such emitters.
-fn shine_from_both_sides(geometry: &mut Geometry, shining: &[u32]) {
-    if shining.is_empty() {
-        return;
-    }
-    let polygons = &mut geometry.polygons;
-    let repeated = duplicates::find(polygons);
-    let bodies = sides::Bodies::new(polygons, &repeated);
-    for (polygon, repeated) in repeated.iter().enumerate() {
-        let material = polygons.materials[polygon];
-        if shining.contains(&material) && !bodies.is_closed(polygon as u32) && !repeated {
-            let back: Vec<u32> = polygons.corners(polygon).iter().rev().copied().collect();
-            polygons.push(back, material);
-            geometry.group_of.push(geometry.group_of[polygon]);
-        }
-    }
-    for material in shining {
-        geometry.library.entries[*material as usize].sides = Some(SidesRule::Front);
     }
 }
 
