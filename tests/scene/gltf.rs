@@ -228,6 +228,16 @@ fn textures_that_cannot_be_read_are_ignored_with_a_warning() {
 }
 
 #[test]
+fn colours_of_vertices_are_left_out_with_a_warning() {
+    let mut document = square();
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(0);
+    let (scene, warnings) = load(&document);
+    assert_eq!(scene.materials[0].reflectance, Vec3::new(0.5, 0.25, 0.125));
+    let expected = "it.gltf: 1 primitives whose vertices have colours taken without them";
+    assert_eq!(warnings, [expected]);
+}
+
+#[test]
 fn cameras_look_along_their_negative_z() {
     let mut document = square();
     document["scenes"][0]["nodes"] = json!([0, 1, 2]);

@@ -112,6 +112,7 @@ struct Noticed {
     skins: usize,
     morphs: usize,
     lines: usize,
+    colours: usize,
     orthographic: usize,
     lights: usize,
     spots: usize,
@@ -126,6 +127,10 @@ impl Noticed {
             ),
             (self.morphs, "meshes with morph targets taken without them"),
             (self.lines, "primitives of points or lines left out"),
+            (
+                self.colours,
+                "primitives whose vertices have colours taken without them",
+            ),
             (self.orthographic, "orthographic cameras left out"),
             (self.lights, "lights that have no surface left out"),
             (

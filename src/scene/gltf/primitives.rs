@@ -48,6 +48,7 @@ pub(super) fn add(
         building.noticed.lines += 1;
         return Ok(());
     };
+    building.noticed.colours += usize::from(primitive.get(&Semantic::Colors(0)).is_some());
     if placed.to_scene.determinant() < 0.0 {
         // A mirrored mesh shows its other side.
         triangles.iter_mut().for_each(|t| t.swap(1, 2));
