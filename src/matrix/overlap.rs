@@ -1,9 +1,9 @@
-//! Surfaces that lie over one another in one plane and face the same way: light would arrive twice.
+//! Surfaces that lie over one another in one plane and radiate to the same side: light would arrive twice.
 
 use super::convex::Convex;
 use crate::geometry::bounds;
 use crate::geometry::polygon::vector_area;
-use crate::scene::NamedScene;
+use crate::scene::{NamedScene, Sides};
 use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -41,23 +41,24 @@ pub(super) fn overlaps(named: &NamedScene, positions: &[DVec3], extent: f64) -> 
             .filter(|other| *other > k)
             .collect();
         others.sort_unstable();
-        pairs.extend(
-            others
-                .into_iter()
-                .filter(|other| overlap(&list, &corners(*other), extent))
-                .map(|other| (k, other)),
-        );
+        pairs.extend(others.into_iter().filter_map(|other| {
+            let facing = overlap(&list, &corners(other), extent)?;
+            let both = [k, other].map(|k| surfaces[k].sides == Sides::Both);
+            (facing == Facing::Alike || both != [false; 2]).then_some((k, other, facing))
+        }));
     }
     let place = |k: usize| named.names.place(surfaces[k].polygon);
     let mut warnings: Vec<String> = pairs
         .iter()
         .take(NAMED)
-        .map(|(a, b)| {
-            format!(
-                "{}: overlaps {} in one plane, facing the same way: row sums there exceed 1",
-                place(*b),
-                place(*a)
-            )
+        .map(|(a, b, facing)| {
+            let twice = match facing {
+                Facing::Alike => "facing the same way: row sums there exceed 1",
+                Facing::Apart => {
+                    "the back of one as the front of the other: row sums exceed 1 where both are seen"
+                }
+            };
+            format!("{}: overlaps {} in one plane, {twice}", place(*b), place(*a))
         })
         .collect();
     if pairs.len() > NAMED {
@@ -69,26 +70,38 @@ pub(super) fn overlaps(named: &NamedScene, positions: &[DVec3], extent: f64) -> 
     warnings
 }
 
-/// Whether two convex polygons have more than a rounding error of area in common.
-fn overlap(a: &[DVec3], b: &[DVec3], extent: f64) -> bool {
+/// How the fronts of two surfaces in one plane face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Facing {
+    Alike,
+    Apart,
+}
+
+/// How two convex polygons face that have more than a rounding error of area in common.
+fn overlap(a: &[DVec3], b: &[DVec3], extent: f64) -> Option<Facing> {
     let (va, vb) = (vector_area(a), vector_area(b));
     let (area_a, area_b) = (va.length(), vb.length());
-    if va.dot(vb) < 0.999_999 * area_a * area_b {
-        return false;
+    let cosine = va.dot(vb) / (area_a * area_b);
+    if cosine.abs() < 0.999_999 {
+        return None;
     }
     let normal = va / area_a;
     if b.iter()
         .any(|p| normal.dot(*p - a[0]).abs() > 1e-6 * extent)
     {
-        return false;
+        return None;
     }
     let mut common = Convex::new(b);
     for (i, p) in a.iter().enumerate() {
         let inwards = normal.cross(a[(i + 1) % a.len()] - *p);
         common = common.divide(|q| inwards.dot(q - *p), 0.0).above;
         if common.is_empty() {
-            return false;
+            return None;
         }
     }
-    vector_area(common.corners()).length() > SHARE * area_a.min(area_b)
+    let facing = match cosine > 0.0 {
+        true => Facing::Alike,
+        false => Facing::Apart,
+    };
+    (vector_area(common.corners()).length() > SHARE * area_a.min(area_b)).then_some(facing)
 }

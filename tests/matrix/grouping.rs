@@ -259,6 +259,21 @@ fn surfaces_that_lie_over_one_another_are_named() {
     );
 }
 
+/// The back of one faces as the front of the other.
+#[test]
+fn surfaces_wound_the_opposite_way_are_named_where_one_has_two_sides() {
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nv 1.5 0.5 0\nv 1.5 1.5 0\nv 0.5 1.5 0\n\
+        usemtl plain\nf 1 2 3 4\nusemtl sheet\nf 8 7 6 5\n";
+    let count = |toml: &str| {
+        let enclosure = Enclosure::new(&load(toml, obj), &portable()).expect("radiates");
+        let warnings = enclosure.warnings().iter();
+        warnings.filter(|w| w.contains("overlaps")).count()
+    };
+    assert_eq!(count(""), 0);
+    assert_eq!(count("material.plain.sides = \"both\"\n"), 1);
+    assert_eq!(count("material.sheet.sides = \"both\"\n"), 1);
+}
+
 #[test]
 fn options_that_make_no_sense_are_refused() {
     let named = load("", OBJ);
