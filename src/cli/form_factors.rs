@@ -117,6 +117,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     for warning in enclosure.warnings() {
         say::warning(warning);
     }
+    // Before the work begins: who misspelt a label is told at once, and finds no matrix that was left behind.
+    let zones = heat
+        .map(|heat| heat.of_rows(enclosure.rows()))
+        .transpose()?;
     let notes = notes(arguments, &enclosure);
     let table = MatrixTable {
         scene: &named.scene.name,
@@ -124,7 +128,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         notes: &notes,
     };
     let (certificate, dropped, correction) =
-        if arguments.enforce.is_some() || arguments.solve || heat.is_some() {
+        if arguments.enforce.is_some() || arguments.solve || zones.is_some() {
             check_memory(enclosure.rows().len())?;
             let mut matrix = enclosure.matrix();
             let correction = match arguments.enforce {
@@ -135,11 +139,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
             let feed =
                 |sink: &mut Sink<'_>| matrix.each_row(sink).map(|()| matrix.certificate.clone());
             let (certificate, dropped) = write(format, arguments, &table, feed)?;
-            if arguments.solve || heat.is_some() {
+            if arguments.solve || zones.is_some() {
                 write_radiosity(
                     &beside(&arguments.output, "radiosity.csv"),
                     &matrix,
-                    heat.as_ref(),
+                    zones.as_deref(),
                 )?;
             }
             (certificate, dropped, correction)

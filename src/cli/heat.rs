@@ -1,10 +1,11 @@
 //! Temperatures in, radiosity and net flux out.
 
 use super::CliError;
-use crate::matrix::{Balance, Matrix};
+use crate::matrix::{Balance, Matrix, Row};
 use crate::output::write_atomically;
 use crate::radiometry::Power;
 use csv::{ReaderBuilder, WriterBuilder};
+use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use std::io::Write;
 use std::path::Path;
@@ -18,8 +19,9 @@ pub(super) struct Heat {
     zones: Vec<Zone>,
 }
 
+/// The temperature of a row.
 #[derive(Debug, Deserialize)]
-struct Zone {
+pub(super) struct Zone {
     label: String,
     #[serde(rename = "temperature_K")]
     temperature: f64,
@@ -63,15 +65,41 @@ pub(super) fn read(path: &Path) -> Result<Heat, CliError> {
     Ok(Heat { file, zones })
 }
 
+impl Heat {
+    /// The temperature of each row; refuses labels that no row has, and rows without a temperature.
+    pub fn of_rows(self, rows: &[Row]) -> Result<Vec<Zone>, CliError> {
+        let numbers = rows.iter().zip(0..).map(|(row, k)| (row.label.as_str(), k));
+        let numbers: FxHashMap<&str, usize> = numbers.collect();
+        let file = &self.file;
+        let mut known: Vec<Option<Zone>> = rows.iter().map(|_| None).collect();
+        for zone in self.zones {
+            let Some(row) = numbers.get(zone.label.as_str()) else {
+                let (line, label) = (zone.line, &zone.label);
+                return Err(CliError::Input(format!(
+                    "{file}:{line}: found the label `{label}`; expected one of the matrix's rows"
+                )));
+            };
+            known[*row] = Some(zone);
+        }
+        let of_row = |(zone, row): (Option<Zone>, &Row)| {
+            zone.ok_or_else(|| {
+                let found = format!("found no temperature of `{}`", row.label);
+                CliError::Input(format!("{file}: {found}; expected one for every row"))
+            })
+        };
+        known.into_iter().zip(rows).map(of_row).collect()
+    }
+}
+
 /// Writes radiosity, irradiance and net flux of every row: three channels of light, or one of heat.
 pub(super) fn write_radiosity(
     path: &Path,
     matrix: &Matrix,
-    heat: Option<&Heat>,
+    zones: Option<&[Zone]>,
 ) -> Result<(), CliError> {
-    let table = match heat {
+    let table = match zones {
         None => light_table(matrix),
-        Some(heat) => heat_table(matrix, heat)?,
+        Some(zones) => heat_table(matrix, zones),
     };
     let mut writer = WriterBuilder::new().from_writer(Vec::new());
     let broken = |e: csv::Error| CliError::System(format!("cannot make the table: {e}"));
@@ -112,27 +140,10 @@ fn light_table(matrix: &Matrix) -> Vec<Vec<String>> {
     std::iter::once(header).chain(lines).collect()
 }
 
-fn heat_table(matrix: &Matrix, heat: &Heat) -> Result<Vec<Vec<String>>, CliError> {
-    let mut known = vec![None; matrix.len()];
-    for zone in &heat.zones {
-        let Some(row) = matrix.index(&zone.label) else {
-            let (file, line, label) = (&heat.file, zone.line, &zone.label);
-            return Err(CliError::Input(format!(
-                "{file}:{line}: found the label `{label}`; expected one of the matrix's rows"
-            )));
-        };
-        known[row] = Some(zone);
-    }
+fn heat_table(matrix: &Matrix, zones: &[Zone]) -> Vec<Vec<String>> {
     let (mut reflectance, mut exitance) = (Vec::new(), Vec::new());
     let mut lines = Vec::new();
-    for (row, zone) in matrix.rows.iter().zip(known) {
-        let Some(zone) = zone else {
-            let found = format!(
-                "{}: found no temperature of `{}`; expected one for every row",
-                heat.file, row.label
-            );
-            return Err(CliError::Input(found));
-        };
+    for (row, zone) in matrix.rows.iter().zip(zones) {
         let emissivity = zone
             .emissivity
             .unwrap_or(1.0 - row.reflectance.element_sum() / 3.0);
@@ -170,7 +181,7 @@ fn heat_table(matrix: &Matrix, heat: &Heat) -> Result<Vec<Vec<String>>, CliError
         "irradiance_W_m2",
         "net_flux_W",
     ];
-    Ok(std::iter::once(header.map(str::to_owned).to_vec())
+    std::iter::once(header.map(str::to_owned).to_vec())
         .chain(lines)
-        .collect())
+        .collect()
 }

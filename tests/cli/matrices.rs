@@ -184,21 +184,24 @@ fn heat_flows_from_the_hot_to_the_cold() {
     assert!(
         (net[1] + OPPOSITE * hot).abs() < 1e-3 * hot && net.iter().sum::<f64>().abs() < 1e-9 * hot
     );
+}
 
-    fs::write(&temperatures, "label,temperature_K\nback,500\nroof,300\n").expect("can be written");
-    form_factors(
-        &cube(&folder),
-        &output,
-        &["--temperatures", text(&temperatures)],
-    )
-    .assert_refused(3, &["T.csv:3", "`roof`"]);
-    fs::write(&temperatures, "label,temperature_K\nback,-5\n").expect("can be written");
-    form_factors(
-        &cube(&folder),
-        &output,
-        &["--temperatures", text(&temperatures)],
-    )
-    .assert_refused(3, &["T.csv:2", "-5"]);
+#[test]
+fn temperatures_that_do_not_fit_the_rows_are_refused_and_leave_nothing() {
+    let folder = folder();
+    let (cube, output) = (cube(&folder), folder.path().join("F.csv"));
+    let temperatures = folder.path().join("T.csv");
+    for (zones, expected) in [
+        ("back,500\nroof,300\n", ["T.csv:3", "`roof`"]),
+        ("back,500\n", ["T.csv", "no temperature of `front`"]),
+        ("back,-5\n", ["T.csv:2", "-5"]),
+    ] {
+        let table = format!("label,temperature_K\n{zones}");
+        fs::write(&temperatures, table).expect("can be written");
+        form_factors(&cube, &output, &["--temperatures", text(&temperatures)])
+            .assert_refused(3, &expected);
+        assert_eq!(names(folder.path()), ["T.csv", "cube.obj"]);
+    }
 }
 
 #[test]
