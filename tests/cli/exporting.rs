@@ -1,6 +1,6 @@
 //! `radiosity export`, and the formats that `radiosity solve` writes.
 
-use super::{draft, floor, folder, names, radiosity, text};
+use super::{Run, command, draft, floor, folder, names, radiosity, text};
 use std::fs;
 
 #[test]
@@ -88,6 +88,30 @@ fn a_written_glb_is_a_scene_again() {
         "camera        front",
     ] {
         assert!(run.out.contains(words), "`{words}` is not in:\n{}", run.out);
+    }
+}
+
+#[test]
+fn objects_keep_their_names_in_a_scene_with_a_warning_wherever_its_path_starts() {
+    let folder = folder();
+    let obj = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\nv 1 1 1\nv 1 1 0\n\
+               o floor\nf 1 2 3 4\nf 1 1 2\no ceiling\nf 5 8 7 6\n";
+    let path = folder.path().join("room.obj");
+    fs::write(&path, obj).expect("can be written");
+    for scene in ["room.obj", text(&path)] {
+        let solve = ["solve", scene, "-o", "out", "--no-pictures"];
+        let run = command()
+            .current_dir(folder.path())
+            .args(solve)
+            .output()
+            .expect("can be started");
+        let run = Run::from(run);
+        run.assert_success();
+        assert!(run.err.contains("without area"), "{}", run.err);
+        let glb = folder.path().join("out/solution.glb");
+        let gltf = gltf::Gltf::open(glb).unwrap_or_else(|error| panic!("{error}"));
+        let names: Vec<_> = gltf.meshes().filter_map(|mesh| mesh.name()).collect();
+        assert_eq!(names, ["floor", "ceiling"], "{scene}");
     }
 }
 
