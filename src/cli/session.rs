@@ -5,7 +5,7 @@ use super::error::Code;
 use super::profile::profile;
 use super::progress::{Look, Watch, is_due, is_interrupted};
 use super::say::{self, is_quiet};
-use super::solve::{How, summary, write};
+use super::solve::{How, SOLUTION, summary, write_beside};
 use crate::Run;
 use crate::output::write_atomically;
 use crate::solution::Solution;
@@ -99,11 +99,15 @@ impl Session<'_> {
         let mut solution = run.finish();
         present(audience, &solution);
         self.warn(&solution);
-        write(&mut solution, self.output, self.how, &bar.history)?;
+        let started = Instant::now();
+        write_atomically(&self.output.join(SOLUTION), |out| solution.write(out))?;
         if !is_left {
-            // What is in the solution now, or belongs to a run before this one.
+            // It is in the solution now, or belongs to a run before this one; `resume` takes it before a solution, so it goes even if
+            // nothing else can be written.
             let _ = std::fs::remove_file(self.output.join(CHECKPOINT));
         }
+        let place = (self.output, started);
+        write_beside(&mut solution, place, self.how, &bar.history)?;
         let seconds = self.started.elapsed().as_secs_f64();
         match look {
             Look::Json => say::result(format!("{}\n", self.done(&solution)?))?,

@@ -192,15 +192,13 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Writes all results.
-pub(super) fn write(
+/// Writes all results but the solution itself, with which writing `started`.
+pub(super) fn write_beside(
     solution: &mut Solution,
-    folder: &Path,
+    (folder, started): (&Path, Instant),
     how: &How,
     history: &History,
 ) -> Result<(), CliError> {
-    let started = Instant::now();
-    write_atomically(&folder.join(SOLUTION), |out| solution.write(out))?;
     if !how.formats.0.is_empty() || !how.no_pictures {
         write_lit(solution, &solution.lit_mesh(), folder, how)?;
     }

@@ -2,6 +2,7 @@
 
 use super::{Run, command, draft, folder, names, radiosity, scene, text};
 use radiosity::solution::{Seconds, Solution};
+use radiosity::solver::StopReason;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -182,6 +183,21 @@ fn copy(from: &Path, to: &Path) {
     for name in names(from) {
         fs::copy(from.join(&name), to.join(&name)).expect("can be copied");
     }
+}
+
+#[test]
+fn a_solution_that_was_written_stands_even_if_its_meshes_cannot_be() {
+    let folder = folder();
+    let output = folder.path().join("out");
+    fs::create_dir_all(output.join("solution.glb")).expect("can be made");
+    let geometry = scene("geometry");
+    let solve = ["solve", text(&geometry), "-o", text(&output)];
+    let more = ["--checkpoint", "1h", "--formats", "glb"];
+    run(&[&solve, &DRAFT, &more]).assert_refused(1, &["solution.glb"]);
+    // Without a checkpoint, from which `resume` would begin anew.
+    assert_eq!(names(&output), ["solution.glb", "solution.rad"]);
+    let solved = Solution::read(&output.join("solution.rad")).expect("was written");
+    assert_eq!(solved.report.stop_reason, StopReason::Converged);
 }
 
 #[test]
