@@ -1,7 +1,7 @@
 //! Every option of a solve as a flag, over a preset.
 
 use super::CliError;
-use super::values::{bytes, duration, error, fraction, named, not_negative, positive};
+use super::values::{bytes, duration, error, fraction, named, not_negative, points, positive};
 use crate::Target;
 use crate::solver::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 use clap::Args;
@@ -83,7 +83,7 @@ pub(super) struct SolveFlags {
     #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
     regather: Option<bool>,
     /// Points at which the error is estimated at the end; 0 for no estimate
-    #[arg(long, value_name = "N", help_heading = PROGRESS)]
+    #[arg(long, value_name = "N", value_parser = points, help_heading = PROGRESS)]
     audit_points: Option<usize>,
     /// With more patches than this, all shoot at once as clusters instead of one after the other
     #[arg(long, value_name = "PATCHES", help_heading = PROGRESS)]

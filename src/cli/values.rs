@@ -29,8 +29,17 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
 
 /// A number of threads. More than this are a slip of the hand, and starting them may fail halfway.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
-    let count = text.parse().ok().filter(|count| *count <= 1024);
-    count.ok_or_else(|| "expected a number of threads from 0 to 1024".into())
+    count(text, 1024, "threads")
+}
+
+/// A number of points. More than this tell no more of an error, and may not fit into memory when all else is solved.
+pub(super) fn points(text: &str) -> Result<usize, String> {
+    count(text, 1_000_000, "points")
+}
+
+fn count(text: &str, most: usize, of: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| *count <= most);
+    count.ok_or_else(|| format!("expected a number of {of} from 0 to {most}"))
 }
 
 /// A file that is to become a PNG.
@@ -94,6 +103,16 @@ pub(super) fn fraction(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_count_beyond_its_bound_is_told_the_bound() {
+        assert_eq!(threads("1024"), Ok(1024));
+        assert_eq!(points("1000000"), Ok(1_000_000));
+        for wrong in ["1000001", "18446744073709551616", "-1", "1e3"] {
+            let bound = "expected a number of points from 0 to 1000000";
+            assert_eq!(points(wrong), Err(bound.into()), "{wrong}");
+        }
+    }
 
     #[test]
     fn durations_and_sizes_have_units() {

@@ -129,6 +129,7 @@ fn wrong_usage_ends_with_2() {
         &["--time-limit", "0"],
         &["--threads=-1"],
         &["--threads", "100000"],
+        &["--audit-points", "1000001"],
         &["--unknown"],
     ] {
         let run = radiosity(&[&solve[..], flags].concat());
