@@ -13,7 +13,7 @@ use std::time::Duration;
 #[derive(Debug, Args, Serialize)]
 pub(super) struct SolveFlags {
     /// Starting point for all options: draft, standard (the default) or accurate
-    #[arg(long, value_parser = named::<Preset>)]
+    #[arg(long, value_parser = named::<Preset>, conflicts_with = "target_error")]
     #[serde(skip)]
     preset: Option<Preset>,
     /// ε_d: split an element while its corners differ by more than this times the tolerance scale
@@ -110,6 +110,11 @@ impl SolveFlags {
     /// The options of a solve that starts from a preset.
     pub(super) fn options(&self) -> Result<Options, CliError> {
         self.over(Preset::Standard.options())
+    }
+
+    /// Whether the options start from a preset that is named.
+    pub(super) fn names_preset(&self) -> bool {
+        self.preset.is_some()
     }
 
     /// The options of a solve that starts from others, unless a preset is named.

@@ -15,6 +15,10 @@ use std::path::{Path, PathBuf, absolute};
 use std::time::Instant;
 
 #[derive(Debug, Args)]
+#[command(
+    mut_arg("preset", |preset| preset.help(PRESET)),
+    mut_arg("engine", |engine| engine.help(ENGINE)),
+)]
 pub(super) struct Arguments {
     /// Folder of a solve: goes on from its checkpoint if there is one, else from its solution
     folder: PathBuf,
@@ -29,6 +33,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     flags: SolveFlags,
 }
+
+/// What is taken where nothing is said, which is not what `solve` takes.
+const PRESET: &str = "Start from draft, standard or accurate rather than from the solve's own options, or its target";
+const ENGINE: &str =
+    "Who traces the rays: auto, embree, obvhs or brute-force; if not given, who did so far";
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
@@ -76,7 +85,9 @@ fn latest(folder: &Path) -> Result<PathBuf, CliError> {
 /// The solve's own settings, but for what the flags say.
 fn settings(solution: &Solution, arguments: &Arguments) -> Result<Settings, CliError> {
     let (report, flags) = (&solution.report, &arguments.flags);
-    let known = report.target.as_ref().map(|target| {
+    // Who names a preset wants its thresholds, not those that are chosen for a target.
+    let target = report.target.as_ref().filter(|_| !flags.names_preset());
+    let known = target.map(|target| {
         let mut fixed = target.fixed.clone();
         fixed.extend(flags.changes()?);
         let n_rms = target.n_rms;

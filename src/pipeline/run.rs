@@ -60,7 +60,7 @@ impl Run {
         Ok(run)
     }
 
-    /// Takes up a solve from its solution, with settings that may have become stricter.
+    /// Takes up a solve from its solution, with settings that may have become stricter; without a target it has none from now on.
     pub fn resume(mut solution: Solution, settings: Settings) -> Result<Self, SolveError> {
         let started = Instant::now();
         let Some(continuation) = &mut solution.continuation else {
@@ -68,13 +68,12 @@ impl Run {
         };
         let report = &mut solution.report;
         let mut options = settings.options;
+        let known = report.target.take();
         if let Some(target) = &settings.target {
             let fresh = target.report();
-            let same = report
-                .target
-                .as_ref()
-                .filter(|known| known.n_rms == fresh.n_rms && known.fixed == fresh.fixed);
-            let target = same.cloned().unwrap_or(fresh);
+            let same =
+                known.filter(|known| known.n_rms == fresh.n_rms && known.fixed == fresh.fixed);
+            let target = same.unwrap_or(fresh);
             options = target.options()?;
             report.target = Some(target);
         }

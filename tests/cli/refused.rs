@@ -121,6 +121,7 @@ fn wrong_usage_ends_with_2() {
     for flags in [
         &["--engine", "magic"][..],
         &["--preset", "best"],
+        &["--preset", "draft", "--target-error", "1%"],
         &["--eps-d=-1"],
         &["--eps-d", "nan"],
         &["--local-share", "1.5"],

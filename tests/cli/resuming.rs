@@ -2,7 +2,7 @@
 
 use super::{Run, command, draft, folder, names, radiosity, scene, text};
 use radiosity::solution::{Seconds, Solution};
-use radiosity::solver::StopReason;
+use radiosity::solver::{Preset, StopReason};
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -175,6 +175,28 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
     let shadow = scene("shadow");
     let other = ["resume", text(&solved), "--scene", text(&shadow)];
     run(&[&other]).assert_refused(3, &["other emitters", "surfaces"]);
+}
+
+#[test]
+fn a_preset_takes_the_place_of_a_target_and_of_a_solves_own_options() {
+    let folder = folder();
+    let (output, geometry) = (text(folder.path()), scene("geometry"));
+    let solve = ["solve", text(&geometry), "-o", output, "--no-pictures"];
+    run(&[&solve, &["--target-error", "20%"]]).assert_success();
+    let resumed = |flags: &[&str]| {
+        let resume = ["resume", output, "--no-pictures", "--formats", "none"];
+        run(&[&resume, flags]).assert_success();
+        let solution = Solution::read(&folder.path().join("solution.rad"));
+        solution.expect("was written").report
+    };
+    assert!(resumed(&[]).target.is_some(), "goes on as it was");
+    let report = resumed(&["--preset", "draft"]);
+    assert_eq!(report.target, None);
+    assert_eq!(report.options, Preset::Draft.options());
+    assert_eq!(resumed(&[]).options, Preset::Draft.options());
+
+    let help = run(&[&["resume", "--help"]]).out;
+    assert!(!help.contains("(the default)"), "{help}");
 }
 
 /// Copies the files of a folder.
