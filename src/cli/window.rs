@@ -3,7 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::names::names_of;
-use super::progress::{Look, catch_interrupts, is_interrupted};
+use super::progress::{Look, is_interrupted};
 use super::say::{self, is_quiet};
 use super::session::{Audience, Session};
 use super::solve::SOLUTION;
@@ -81,7 +81,6 @@ impl Watching {
 
     /// Solves in a thread beside the window, as windows belong to the main thread; ends when both have.
     pub fn around(self, session: &Session, run: Run) -> Result<Code, CliError> {
-        catch_interrupts();
         let solution = run.solution();
         let (title, cameras) = (solution.report.scene.clone(), solution.cameras.clone());
         let first = exhibit(solution);
