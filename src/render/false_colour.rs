@@ -136,13 +136,21 @@ fn short(value: f64) -> String {
         0.0 => "0".into(),
         middle if (1e-3..1e6).contains(&middle) => {
             let decimals = (2 - middle.log10().floor() as i32).clamp(0, 6) as usize;
-            let text = format!("{middle:.decimals$}");
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
-            }
+            without_zeros(&format!("{middle:.decimals$}")).to_owned()
         }
-        other => format!("{other:.0e}"),
+        other => {
+            let text = format!("{other:.2e}");
+            let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+            format!("{}e{power}", without_zeros(digits))
+        }
+    }
+}
+
+/// A number without zeros at the end of its decimals.
+fn without_zeros(text: &str) -> &str {
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => text,
     }
 }
 
@@ -170,6 +178,9 @@ mod tests {
             (500.0, "500"),
             (0.25, "0.25"),
             (1e7, "1e7"),
+            (1.5e6, "1.5e6"),
+            (0.6 * 8e9, "4.8e9"),
+            (2.5e-4, "2.5e-4"),
             (1234.0, "1234"),
         ] {
             assert_eq!(short(value), text);
