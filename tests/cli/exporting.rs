@@ -32,10 +32,32 @@ fn exposure_changes_colours_and_efficacy_lux() {
         export("a.obj", "--exposure", "-1"),
         export("b.obj", "--exposure", "2.5")
     );
-    assert_ne!(
-        export("a.vtu", "--efficacy", "1"),
-        export("b.vtu", "--efficacy", "179")
-    );
+    let [one, many] = ["1", "179"].map(|efficacy| {
+        let vtu = export(&format!("{efficacy}.vtu"), "--efficacy", efficacy);
+        illuminance(&vtu)
+    });
+    assert!(one.iter().any(|lux| *lux > 0.0));
+    assert_eq!(one.len(), many.len());
+    for (one, many) in one.into_iter().zip(many) {
+        assert!((179.0 * one - many).abs() <= 1e-6 * many, "{one}, {many}");
+    }
+}
+
+/// The array `illuminance (lx)` of a `.vtu`.
+fn illuminance(vtu: &[u8]) -> Vec<f32> {
+    const START: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+    let start = vtu.windows(START.len()).position(|bytes| bytes == START);
+    let (header, data) = vtu.split_at(start.expect("has data") + START.len());
+    let header = String::from_utf8_lossy(header);
+    let array = header.split("Name=\"illuminance (lx)\"").nth(1);
+    let offset = array.and_then(|array| array.split("offset=\"").nth(1)?.split('"').next());
+    let offset: usize = offset
+        .and_then(|text| text.parse().ok())
+        .expect("is stated");
+    let (length, numbers) = data[offset..].split_at(8);
+    let length = u64::from_le_bytes(length.try_into().expect("8 bytes")) as usize;
+    let numbers = numbers[..length].as_chunks::<4>().0.iter();
+    numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
 #[test]
