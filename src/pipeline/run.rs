@@ -77,7 +77,7 @@ impl Run {
             options = target.options()?;
             report.target = Some(target);
         }
-        if is_stricter(&options, &report.options) {
+        if differs(&options, &report.options) {
             continuation.course.reopen();
         }
         let pool = pool(settings.threads)?;
@@ -295,8 +295,8 @@ fn check_memory(
 /// Why there is always a solution, and one that can go on.
 const KEPT: &str = "a run keeps its solution and what it takes to go on";
 
-/// Whether there is more to do than for options under which all was done.
-fn is_stricter(now: &Options, before: &Options) -> bool {
+/// Whether there may be something to do where all was done under options `before`.
+fn differs(now: &Options, before: &Options) -> bool {
     let method = |of: &Options| Options {
         max_shots: None,
         time_limit: None,

@@ -10,9 +10,9 @@ pub enum Phase {
     Shooting,
     /// Splitting elements after a shot.
     Refining,
-    /// All light once more, patch by patch or, from clusters, vertex by vertex.
+    /// All light once more: that of one patch after the other or, from clusters, that of all at one patch after the other.
     Gathering {
-        /// Patches whose light is in, or vertices that have it.
+        /// Patches whose light is in or, from clusters, that have it.
         done: u32,
         /// Patches in all.
         of: u32,

@@ -104,6 +104,6 @@ fn place(at: f64, size: u32, wrap: WrappingMode) -> usize {
         WrappingMode::Repeat => at.rem_euclid(1.0),
         WrappingMode::MirroredRepeat => 1.0 - (at.rem_euclid(2.0) - 1.0).abs(),
     };
-    // What is no number becomes 0.
+    // What is no number becomes the last.
     (within * f64::from(size)).min(f64::from(size - 1)) as usize
 }
