@@ -1,6 +1,6 @@
 //! The interpolant: linear on the triangles around the centre of each element.
 
-use super::{Lattice, Mesh, UNIT};
+use super::{Mesh, UNIT};
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 
@@ -115,14 +115,5 @@ impl Mesh {
     ) -> Spectrum {
         let weighted = self.interpolate(leaf, point);
         weighted.iter().map(|(v, w)| value(*v) * *w).sum()
-    }
-
-    /// The leaf and weights at a lattice point of a patch.
-    pub fn interpolate_at(&self, patch: u32, lattice: Lattice) -> [Weighted; 3] {
-        let (u, v) = lattice.unit();
-        self.interpolate(
-            self.leaf_at(patch, u, v),
-            self.patch(patch).position(lattice),
-        )
     }
 }

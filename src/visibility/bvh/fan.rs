@@ -13,9 +13,9 @@ use crate::visibility::{COORDINATE_LIMIT, Fans, MAX_FAN, T_FAR, T_NEAR, in_range
 use glam::Vec3;
 
 /// Directions shorter than this along an axis count as this long: their inverse stays finite.
-const SHORTEST: f32 = 1e-18;
+pub(super) const SHORTEST: f32 = 1e-18;
 /// The last of the products in the box test is enlarged by its six roundings and a reserve.
-const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
+pub(super) const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 /// The segments of one fan, up to 64, in arrays of one coordinate each.
 #[repr(align(64))]

@@ -1,13 +1,10 @@
 //! One ray to its nearest hit: near children first, boxes behind the best hit are skipped.
 
+use super::fan::{ROUNDING, SHORTEST};
 use super::probe::Probe;
 use super::tree::{Content, Node, Tree};
 use crate::visibility::{Hit, Ray, traceable};
 use glam::Vec3;
-
-/// As in the traversal of fans.
-const SHORTEST: f32 = 1e-18;
-const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 /// A pair that waits for its turn, and where the ray enters its box.
 pub type Waiting = (u32, f32);
