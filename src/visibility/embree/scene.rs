@@ -165,3 +165,26 @@ impl Drop for Geometry<'_> {
         unsafe { sys::rtcReleaseGeometry(self.raw()) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_device_takes_and_gives_back_is_counted() {
+        let device = Device::new(1, None).expect("Embree is installed");
+        let before = device.used();
+        let geometry = Geometry::new(&device).expect("can be made");
+        let corners = std::iter::repeat_n([0f32; 3], 5_000);
+        let (kind, format) = (
+            sys::RTCBufferType::RTC_BUFFER_TYPE_VERTEX,
+            sys::RTCFormat::RTC_FORMAT_FLOAT3,
+        );
+        geometry
+            .copy(kind, format, corners)
+            .expect("there is memory");
+        assert!(device.used() >= before + 5_000 * 12);
+        drop(geometry);
+        assert!(device.used() < before + 5_000 * 12);
+    }
+}

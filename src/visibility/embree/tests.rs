@@ -48,16 +48,6 @@ fn memory_that_is_refused_is_an_error_with_its_cause_at_every_limit() {
 }
 
 #[test]
-fn what_the_device_gives_back_is_counted() {
-    let device = Device::new(1, None).expect("Embree is installed");
-    let before = device.used();
-    let mut scene = Scene::new(device).expect("can be made");
-    scene.add(&strip(5_000)).expect("there is memory");
-    let committed = scene.commit().expect("there is memory");
-    assert!(committed.device().used() > before + 5_000 * 12);
-}
-
-#[test]
 fn an_instruction_set_that_is_not_there_is_an_error_or_another() {
     // Embree takes what it knows of a configuration, and refuses what it cannot run on.
     for config in [
