@@ -76,7 +76,8 @@ impl Isa {
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             Self::Portable => kernel.run(),
-            // SAFETY: values other than `Portable` come from `available`, which found the instructions.
+            // SAFETY: the processor has the instructions. Anyone can write `Isa::Avx2`, but only this crate can name a `Kernel`, and runs
+            // its own by `Scratch::isa` and `ClusterScratch::isa`: the widest set of those found, which nobody outside can replace.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => unsafe { run_avx2(kernel) },
             // SAFETY: as above.

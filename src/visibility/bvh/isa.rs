@@ -9,7 +9,7 @@ use crate::visibility::Fans;
 pub fn occluded(isa: Isa, tree: &Tree, fans: &Fans, masks: &mut Vec<u64>) {
     match isa {
         Isa::Portable => fan::occluded::<lanes::Portable>(tree, fans, masks),
-        // SAFETY: this value comes from `Isa::available`, which found the instructions.
+        // SAFETY: the processor has the instructions: `Obvhs::with_isa` keeps no value that `Isa::available` has not found.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => unsafe { super::x86::occluded_avx2(tree, fans, masks) },
         // SAFETY: as above.
