@@ -121,7 +121,7 @@ impl SourceShape {
     }
 
     /// The corners of the four parts, in the order in which the mesh numbers the children of an element.
-    pub(super) fn children<P: Copy>(
+    pub fn children<P: Copy>(
         self,
         corners: [P; 4],
         midpoint: impl Fn(P, P) -> P,

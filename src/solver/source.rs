@@ -3,7 +3,7 @@
 use super::light::{Light, Sign};
 use super::options::{Options, Shooting};
 use super::run::Solver;
-use crate::form_factor::{Source, SourceThresholds};
+use crate::form_factor::{Source, SourceShape, SourceThresholds};
 use crate::geometry::polygon::vector_area;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
@@ -146,26 +146,13 @@ fn subdivide(mut cells: Vec<Quad>, triangle: bool, levels: u32) -> Vec<Quad> {
 }
 
 /// The four parts of a cell, in the order of the pyramid.
-pub(super) fn parts(&[a, b, c, d]: &Quad, triangle: bool) -> [Quad; 4] {
+pub(super) fn parts(cell: &Quad, triangle: bool) -> [Quad; 4] {
+    let shape = match triangle {
+        true => SourceShape::Triangle,
+        false => SourceShape::Quad,
+    };
     let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
-    let (ab, bc) = (half(a, b), half(b, c));
-    if triangle {
-        let ca = half(c, a);
-        [
-            [a, ab, ca, a],
-            [ab, b, bc, ab],
-            [ca, bc, c, ca],
-            [bc, ca, ab, bc],
-        ]
-    } else {
-        let (cd, da, m) = (half(c, d), half(d, a), half(a, c));
-        [
-            [a, ab, m, da],
-            [ab, b, bc, m],
-            [m, bc, c, cd],
-            [da, m, cd, d],
-        ]
-    }
+    shape.children(*cell, half, |[a, _, c, _]| half(a, c))
 }
 
 /// The interpolant at the cell's centre; where elements are finer than the cell, the mean over its parts.
