@@ -59,7 +59,7 @@ pub(super) struct SolveFlags {
     /// ε_A: no cell of the source is smaller than this fraction of the shooter (1/1024 at least)
     #[arg(long = "eps-area", value_name = "FRACTION", value_parser = positive, help_heading = FORM_FACTORS)]
     epsilon_area: Option<f64>,
-    /// Take ε_fd and ε_fe for form factors, as in the paper, rather than irradiances
+    /// Take ε_fd and ε_fe for form factors, as in the paper, rather than irradiances; clusters do not
     #[arg(long, help_heading = FORM_FACTORS)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     raw_form_factors: bool,
@@ -69,7 +69,7 @@ pub(super) struct SolveFlags {
     /// The factor of the five-times rule
     #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = FORM_FACTORS)]
     distance_factor: Option<f64>,
-    /// What a patch shoots: interpolated, or its mean as in the paper
+    /// What a patch shoots: interpolated, or its mean as in the paper; clusters shoot what is interpolated
     #[arg(long, value_parser = named::<Shooting>, help_heading = PROGRESS)]
     shooting: Option<Shooting>,
     /// Converged when unshot over emitted power falls below this

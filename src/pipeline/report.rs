@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::solution::{EngineReport, PowerReport, Report, Seconds};
-use crate::solver::{Ledger, Light, Options, Outcome, StopReason};
+use crate::solver::{Ledger, Light, Options, Outcome, Shooting, StopReason};
 use crate::visibility::Visibility;
 
 /// The report before anything was shot.
@@ -88,11 +88,37 @@ const INTO_THE_OPEN: f64 = 0.99;
 const BACKS_SAY: &str = "light falls on the backs of surfaces";
 const OPEN_SAYS: &str = "light leaves the scene";
 
+/// How the warning of options that clusters pass over begins.
+const CLUSTERS_SAY: &str = "no effect on patches that shoot as clusters";
+
+/// Warns of what is known at the end of a session, and only of that: a session before may have ended with other warnings.
+pub(super) fn warn_at_end(report: &mut Report, mesh: &Mesh) {
+    let begins = [BACKS_SAY, OPEN_SAYS, CLUSTERS_SAY];
+    let is_of_before = |known: &String| begins.iter().any(|begin| known.starts_with(begin));
+    report.warnings.retain(|known| !is_of_before(known));
+    warn_of_options(report, mesh);
+    warn_of_losses(report);
+}
+
+/// Warns of options that clusters pass over.
+fn warn_of_options(report: &mut Report, mesh: &Mesh) {
+    let options = &report.options;
+    let idle = [
+        (options.raw_form_factors, "raw_form_factors"),
+        (options.shooting == Shooting::Mean, "shooting = mean"),
+    ];
+    let idle: Vec<&str> = idle.iter().filter(|o| o.0).map(|o| o.1).collect();
+    if options.clusters(mesh) && !idle.is_empty() {
+        report.warnings.push(format!(
+            "{CLUSTERS_SAY}, as all do with more than {} (cluster_from): {}",
+            options.cluster_from,
+            idle.join(", ")
+        ));
+    }
+}
+
 /// Warns where much of the light is lost: on the wrong side of surfaces, or as emitters look away from everything.
-pub(super) fn warn_of_losses(report: &mut Report) {
-    let is_of_losses =
-        |known: &String| known.starts_with(BACKS_SAY) || known.starts_with(OPEN_SAYS);
-    report.warnings.retain(|known| !is_of_losses(known));
+fn warn_of_losses(report: &mut Report) {
     let power = &report.power;
     let onto_backs = power.onto_backs / power.emitted;
     let into_the_open = (power.escaped - power.onto_backs) / power.emitted;

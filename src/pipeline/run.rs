@@ -1,6 +1,6 @@
 //! A solve that can be left and taken up again.
 
-use super::report::{blank, take_in, warn_of_losses};
+use super::report::{blank, take_in, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -144,7 +144,7 @@ impl Run {
             }
             _ => last,
         };
-        warn_of_losses(&mut solution.report);
+        warn_at_end(&mut solution.report, &solution.mesh);
         solution
     }
 

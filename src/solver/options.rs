@@ -71,13 +71,13 @@ pub struct Options {
     pub epsilon_fe: f64,
     /// No cell is split into parts below this fraction of the shooter's area (ε_A).
     pub epsilon_area: f64,
-    /// ε_fd and ε_fe are form factors, as in the paper.
+    /// ε_fd and ε_fe are form factors, as in the paper; clusters pass it over.
     pub raw_form_factors: bool,
     /// The formula for form factors.
     pub form_factor: FormFactorRule,
     /// The factor of the five-times rule.
     pub distance_factor: f64,
-    /// What a patch shoots.
+    /// What a patch shoots; clusters pass it over.
     pub shooting: Shooting,
     /// The solve is converged when unshot over emitted power falls below this.
     pub tolerance: f64,

@@ -263,6 +263,32 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
 }
 
 #[test]
+fn options_that_clusters_pass_over_are_warned_of_once() {
+    let folder = folder();
+    let (path, output) = (floor(&folder), folder.path().join("out"));
+    let solve = |more: &[&str]| {
+        let solve = ["solve", text(&path), "-o", text(&output), "--no-pictures"];
+        let run = radiosity(&[&solve[..], more].concat());
+        run.assert_success();
+        run.err
+    };
+    let begin = "no effect on patches that shoot as clusters";
+    let options = ["--raw-form-factors", "--shooting", "mean"];
+    assert!(!solve(&options).contains(begin), "one patch is no cluster");
+    assert!(!solve(&["--cluster-from", "0"]).contains(begin));
+    let said = solve(&[&options[..], &["--cluster-from", "0"]].concat());
+    let warning = format!(
+        "{begin}, as all do with more than 0 (cluster_from): raw_form_factors, shooting = mean"
+    );
+    assert!(said.contains(&warning), "{said}");
+    let page = fs::read_to_string(output.join("report.html")).expect("was written");
+    assert!(page.contains(&warning), "{page}");
+    radiosity(&["resume", text(&output), "--no-pictures"]).assert_success();
+    let warnings = report(&output)["warnings"].to_string();
+    assert_eq!(warnings.matches(begin).count(), 1, "{warnings}");
+}
+
+#[test]
 fn a_solve_whose_progress_nobody_reads_any_more_is_not_lost() {
     let folder = folder();
     let output = folder.path().join("out");
