@@ -30,6 +30,7 @@ impl Mesh {
         drop(regions);
         let mut mesh = Self {
             unsplit_contacts: pieces.unsplit,
+            uncut_gaps: pieces.uncut,
             ..Self::empty(frame, limits)
         };
         // Of many slivers there would be more such elements than of all others together.
@@ -88,6 +89,7 @@ impl Mesh {
             limits,
             clearances: FxHashMap::default(),
             unsplit_contacts: 0,
+            uncut_gaps: 0,
         }
     }
 

@@ -71,6 +71,8 @@ pub struct Mesh {
     clearances: FxHashMap<u32, f32>,
     /// Surfaces that could not be split along the lines in which others meet them: light may leak there.
     pub unsplit_contacts: usize,
+    /// Surfaces that could not be cut along the rims of thin gaps in front of them: light may end there in teeth.
+    pub uncut_gaps: usize,
 }
 
 impl Mesh {

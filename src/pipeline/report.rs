@@ -141,12 +141,20 @@ fn warn_of_losses(report: &mut Report) {
 /// What the reader found suspicious, and what could not be meshed as it should.
 fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let mut warnings = scene.warnings.clone();
-    let count = mesh.unsplit_contacts;
-    if count > 0 {
-        let plural = if count == 1 { "" } else { "s" };
-        warnings.push(format!(
-            "{count} surface{plural} not split where others meet: light may leak along the contacts"
-        ));
+    for (count, what) in [
+        (
+            mesh.unsplit_contacts,
+            "not split where others meet: light may leak along the contacts",
+        ),
+        (
+            mesh.uncut_gaps,
+            "not cut below the rims of what is close in front: light may end there in teeth",
+        ),
+    ] {
+        if count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            warnings.push(format!("{count} surface{plural} {what}"));
+        }
     }
     warnings
 }

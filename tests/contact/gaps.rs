@@ -85,6 +85,25 @@ fn a_parallel_sheet_splits_along_its_outline_alone() {
 }
 
 #[test]
+fn a_floor_is_cut_along_the_rims_of_any_number_of_tiles() {
+    let across = 30;
+    let mut tiles = Polygons::default();
+    for i in 0..across * across {
+        let at = |i: i32| 0.1 * f64::from(i) - 1.5;
+        let by = DVec3::new(at(i % across), 5e-4, at(i / across));
+        tiles = tiles.and(&floor(0.06), DQuat::IDENTITY, by);
+    }
+    let scene = floor(4.0)
+        .and(&tiles, DQuat::from_rotation_y(0.3), DVec3::ZERO)
+        .scene(true);
+    let found = pieces_down_to(&scene, SMALLEST);
+    assert_eq!(found.mesh.uncut_gaps, 0);
+    let is_below_one = |piece: &&Vec<DVec3>| vector_area(piece).length() < 1.01 * 0.06 * 0.06;
+    let below = found.of[0].iter().filter(is_below_one).count();
+    assert!(below >= 900, "{below} of 900 tiles");
+}
+
+#[test]
 fn a_ball_close_above_a_floor_has_no_rim() {
     let ball = sphere(0.5, 24);
     for gap in [2e-5, 4e-4] {

@@ -38,7 +38,8 @@ impl Polygons {
         let (mut vertices, mut surfaces) = (Vec::new(), Vec::new());
         for (polygon, number) in self.0.iter().zip(0..) {
             let vertex = |p: &DVec3| {
-                let known = vertices.iter().position(|v| v == p).filter(|_| welded);
+                let position = || vertices.iter().position(|v| v == p);
+                let known = welded.then(position).flatten();
                 known.unwrap_or_else(|| {
                     vertices.push(*p);
                     vertices.len() - 1
@@ -189,11 +190,11 @@ pub fn pieces_down_to(scene: &Scene, min_size: f64) -> Pieces {
     }
     let regions = regions(scene, &mesh.frame);
     let pieces = Pieces { mesh, of };
-    for number in 0..scene.surfaces.len() {
-        match members(&regions, scene, number)[..] {
+    for (number, members) in members(&regions, scene).iter().enumerate() {
+        match members[..] {
             [] => assert!(pieces.of[number].is_empty(), "surface {number}"),
             [_] => assert_tiled(scene, &pieces, number),
-            ref members => assert_tiled_together(scene, &pieces, members),
+            _ => assert_tiled_together(scene, &pieces, members),
         }
     }
     pieces
@@ -209,10 +210,13 @@ pub fn corners(scene: &Scene, surface: usize) -> Vec<DVec3> {
         .collect()
 }
 
-/// The surfaces of the region of which a surface is the first, itself alone if it is in none; none if another is the first.
-fn members(regions: &Regions, scene: &Scene, number: usize) -> Vec<usize> {
-    let is_member = |other: &usize| regions.first(*other as u32) as usize == number;
-    (0..scene.surfaces.len()).filter(is_member).collect()
+/// For each surface those of the region of which it is the first: itself alone if it is in none, none if another is the first.
+fn members(regions: &Regions, scene: &Scene) -> Vec<Vec<usize>> {
+    let mut members = vec![Vec::new(); scene.surfaces.len()];
+    for surface in 0..scene.surfaces.len() {
+        members[regions.first(surface as u32) as usize].push(surface);
+    }
+    members
 }
 
 /// The pieces of a region are convex, face as its members do, have their centres on them and their area.
@@ -279,11 +283,8 @@ fn assert_tiled(scene: &Scene, pieces: &Pieces, number: usize) {
             assert!(inside, "surface {number}: {piece:?} leaves it");
         }
     }
-    let patches = pieces
-        .mesh
-        .patches
-        .iter()
-        .filter(|p| !p.back && p.surface as usize == number);
+    let patches = pieces.mesh.patches.of_surface(number as u32);
+    let patches = patches.map(|(_, p)| p).filter(|p| !p.back);
     let outline: f64 = patches
         .flat_map(|p| Vec::from_iter(sides(p.corners()).zip(p.outline)))
         .filter(|s| s.1)

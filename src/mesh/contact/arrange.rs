@@ -1,6 +1,7 @@
 //! Segments in a plane, snapped and split until they have nothing in common but ends.
 
 use super::face::Face;
+use super::index::Index;
 use super::lines::Line;
 use glam::DVec2;
 use rustc_hash::FxHashMap;
@@ -179,27 +180,17 @@ impl<'a> Nodes<'a> {
     /// Nodes that lie on an edge's inside, or within half the reach of it: in a triangle of three nodes, no closer than the
     /// reach, at most one can be so close to the side between the others, or edges would be sent back and forth among them.
     fn stops_on(&self, edges: &[[u32; 2]]) -> Vec<Stop> {
-        let mut by_x: Vec<(f64, u32)> = self
-            .list
-            .iter()
-            .zip(0..)
-            .map(|(node, i)| (node.at.x, i))
-            .collect();
-        by_x.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let nodes = Index::of(self.list.iter().map(|node| [node.at; 2]));
         let reach = 0.5 * self.face.reach;
         let mut stops = Vec::new();
         for (number, edge) in edges.iter().enumerate() {
             let [a, b] = self.ends(*edge);
-            let (low, high) = (a.min(b) - reach, a.max(b) + reach);
-            let first = by_x.partition_point(|(x, _)| *x < low.x);
-            for (_, node) in by_x[first..].iter().take_while(|(x, _)| *x <= high.x) {
-                let at = self.list[*node as usize].at;
-                if edge.contains(node) || at.y < low.y || at.y > high.y {
-                    continue;
-                }
+            for node in nodes.near([a, b], reach) {
+                let (at, node) = (self.list[node].at, node as u32);
                 let place = (at - a).dot(b - a) / (b - a).length_squared();
-                if (0.0..=1.0).contains(&place) && a.lerp(b, place).distance(at) <= reach {
-                    stops.push((number, place, *node));
+                let is_inside = (0.0..=1.0).contains(&place) && !edge.contains(&node);
+                if is_inside && a.lerp(b, place).distance(at) <= reach {
+                    stops.push((number, place, node));
                 }
             }
         }
@@ -208,26 +199,27 @@ impl<'a> Nodes<'a> {
 
     /// Where edges cross each other's inside; makes the nodes there.
     fn crossings_of(&mut self, edges: &[[u32; 2]]) -> Vec<Stop> {
-        let mut by_x: Vec<(f64, usize)> = edges
-            .iter()
-            .enumerate()
-            .map(|(i, edge)| (self.low_x(*edge), i))
-            .collect();
-        by_x.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        let lines: Vec<Line> = edges.iter().map(|edge| self.ends(*edge)).collect();
+        let low = |edge: &usize| lines[*edge][0].x.min(lines[*edge][1].x);
+        let mut from_left: Vec<usize> = (0..edges.len()).collect();
+        from_left.sort_by(|x, y| low(x).total_cmp(&low(y)));
+        let mut places = vec![0; edges.len()];
+        for (place, edge) in from_left.iter().enumerate() {
+            places[*edge] = place;
+        }
+        let index = Index::of(lines.iter().copied());
         let mut stops = Vec::new();
-        for (place, (_, first)) in by_x.iter().enumerate() {
-            let [a, b] = self.ends(edges[*first]);
-            let (low, high) = (a.min(b), a.max(b));
-            for (_, second) in by_x[place + 1..].iter().take_while(|(x, _)| *x <= high.x) {
-                let [c, d] = self.ends(edges[*second]);
-                if c.y.max(d.y) < low.y || c.y.min(d.y) > high.y {
-                    continue;
-                }
-                let Some((s, t)) = crossing([a, b], [c, d]) else {
+        for first in from_left {
+            let near = index.near(lines[first], 0.0);
+            let mut others: Vec<usize> = near.filter(|of| places[*of] > places[first]).collect();
+            others.sort_unstable_by_key(|of| places[*of]);
+            for second in others {
+                let Some((s, t)) = crossing(lines[first], lines[second]) else {
                     continue;
                 };
+                let [a, b] = lines[first];
                 let node = self.insert(a.lerp(b, s));
-                for (edge, place) in [(*first, s), (*second, t)] {
+                for (edge, place) in [(first, s), (second, t)] {
                     if !edges[edge].contains(&node) {
                         stops.push((edge, place, node));
                     }
@@ -235,11 +227,6 @@ impl<'a> Nodes<'a> {
             }
         }
         stops
-    }
-
-    fn low_x(&self, edge: [u32; 2]) -> f64 {
-        let [a, b] = self.ends(edge);
-        a.x.min(b.x)
     }
 }
 

@@ -19,6 +19,7 @@
 //! 5 %. Uncut, boxes that hover are a fifth too dark at the foot, for what they see of the floor; cut, nothing there is off by 5 %.
 
 use super::face::Face;
+use super::index::Index;
 use super::lines::{Line, inside};
 use crate::geometry::polygon;
 use crate::scene::Corners;
@@ -30,9 +31,6 @@ const HIGHEST: f64 = 0.25;
 
 /// Vertices beside a rim are evaluated this many heights of the gap away from it.
 const CLEARANCE: f64 = 2.0;
-
-/// A face with more rims than this in front is not cut along them: bending them takes time with their square.
-const MOST_RIMS: usize = 1000;
 
 /// The cosine of the steepest slope against a face of what lies in front of it; what is steeper stands on it.
 const LYING: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -68,14 +66,34 @@ pub(super) struct Rim {
     pub foot: Line,
 }
 
-/// How far from the border of a piece of a face light is evaluated, if rims are beside it.
-pub(super) fn clearance(rims: &[Rim], corners: &[DVec2]) -> f64 {
-    let beside = |rim: &&Rim| {
-        let is_near = |at: &DVec2| nearest_on(rim.foot, *at).distance(*at) <= rim.height;
-        corners.iter().any(is_near)
-    };
-    let heights = rims.iter().filter(beside).map(|rim| rim.height);
-    CLEARANCE * heights.fold(0.0, f64::max)
+/// The rims in front of a face, by place.
+pub(super) struct Rims {
+    list: Vec<Rim>,
+    feet: Index,
+    highest: f64,
+}
+
+impl Rims {
+    pub fn of(list: Vec<Rim>) -> Self {
+        Self {
+            feet: Index::of(list.iter().map(|rim| rim.foot)),
+            highest: list.iter().map(|rim| rim.height).fold(0.0, f64::max),
+            list,
+        }
+    }
+
+    /// How far from the border of a piece of the face light is evaluated, if rims are beside it.
+    pub fn clearance(&self, corners: &[DVec2]) -> f64 {
+        let beside = |at: &DVec2| {
+            let near = self.feet.near([*at; 2], self.highest);
+            let rims = near.map(|number| self.list[number]);
+            let is_near = |rim: &Rim| nearest_on(rim.foot, *at).distance(*at) <= rim.height;
+            rims.filter(is_near)
+                .map(|rim| rim.height)
+                .fold(0.0, f64::max)
+        };
+        CLEARANCE * corners.iter().map(beside).fold(0.0, f64::max)
+    }
 }
 
 impl Gaps {
@@ -117,12 +135,9 @@ impl Gaps {
             Some(Rim { foot, ..rim })
         };
         let mut rims: Vec<Rim> = rims.filter_map(|of| on_face(of[0].rim)).collect();
-        if rims.len() > MOST_RIMS {
-            return Vec::new();
-        }
         // Of rims above one another the lowest is sharpest.
         rims.sort_by(|x, y| x.height.total_cmp(&y.height));
-        bent(&rims, &[&face.outline()[..], lines].concat())
+        bent(&rims, [&face.outline()[..], lines].concat())
     }
 
     /// The sides that a surface has in the gap, between the heights `lowest` and that of the gap.
@@ -181,19 +196,22 @@ impl Gaps {
 
 /// What is between a rim and a line beside it that is nearer than the gap is high would be a row of needles, and the light at the rim is
 /// no sharper. So rims are bent onto lines, and onto lower rims; the lines stay as they are.
-fn bent(rims: &[Rim], lines: &[Line]) -> Vec<Rim> {
-    let mut all = lines.to_vec();
+fn bent(rims: &[Rim], lines: Vec<Line>) -> Vec<Rim> {
+    let mut all = Index::of(lines);
     let mut bent = Vec::new();
     for rim in rims {
         let is_near = |a: DVec2, b: DVec2| a.distance(b) <= rim.height;
-        for part in chain(rim.foot, &all, is_near).windows(2) {
+        // Its ends move by its height, what it passes is as far away, and what lies on that again.
+        let mut near = all.lines_near(rim.foot, 4.0 * rim.height);
+        for part in chain(rim.foot, &near, is_near).windows(2) {
             let [a, b] = [part[0], part[1]];
             let on_others = |place: &f64| {
                 let at = a.lerp(b, *place);
-                all.iter().any(|line| is_near(nearest_on(*line, at), at))
+                near.iter().any(|line| is_near(nearest_on(*line, at), at))
             };
             if !is_near(a, b) && ![0.25, 0.5, 0.75].iter().all(on_others) {
                 let foot = [a, b];
+                near.push(foot);
                 all.push(foot);
                 bent.push(Rim { foot, ..*rim });
             }

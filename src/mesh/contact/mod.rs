@@ -21,6 +21,7 @@ mod border;
 mod face;
 mod gaps;
 mod grade;
+mod index;
 mod lines;
 mod near;
 mod outline;
@@ -34,7 +35,7 @@ use crate::geometry::{Frame, polygon};
 use crate::scene::{Corners, Scene, Sides};
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
-use gaps::{Gaps, Rim, clearance};
+use gaps::{Gaps, Rim, Rims};
 use glam::{DVec2, DVec3};
 use grade::{Grading, grade};
 use lines::Line;
@@ -43,6 +44,7 @@ use quads::{FAIR, flatness};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use shapes::Shapes;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use straighten::straighten;
 use tile::tile;
 
@@ -54,8 +56,8 @@ pub use regions::Regions;
 /// on, though rays, which leave a surface by 1e-5, pass only gaps wider than that.
 const REACH: f64 = 1e-6;
 
-/// A surface on which more segments than this end is left whole: finding where they cross takes time with their square.
-const MOST_LINES: usize = 10_000;
+/// A surface on which more segments than this end is left whole: it would take minutes and gigabytes.
+const MOST_LINES: usize = 100_000;
 
 /// With more surfaces than this all patches shoot at once, if the options do not say otherwise.
 pub(super) const MANY: usize = 2000;
@@ -110,6 +112,8 @@ pub struct Pieces {
     pub list: Vec<Piece>,
     /// Surfaces that were left whole although others touch them: too many lines, or lines too close to tell apart.
     pub unsplit: usize,
+    /// Surfaces that were not cut along the rims of thin gaps in front of them, for the same reasons.
+    pub uncut: usize,
 }
 
 /// The triangles of a scene that are one surface.
@@ -151,6 +155,7 @@ pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions, smallest: f64) ->
             }
         }
     }
+    pieces.uncut = splitter.uncut.into_inner();
     pieces
 }
 
@@ -162,6 +167,8 @@ struct Splitter<'a> {
     reach: f64,
     gaps: Gaps,
     grading: Grading,
+    /// Faces that were not cut along the rims in front of them.
+    uncut: AtomicUsize,
 }
 
 impl<'a> Splitter<'a> {
@@ -173,6 +180,7 @@ impl<'a> Splitter<'a> {
             reach: REACH * frame.extent(),
             gaps,
             grading: Grading::of(shapes.surfaces.len(), frame),
+            uncut: AtomicUsize::new(0),
         }
     }
 
@@ -255,17 +263,20 @@ impl<'a> Splitter<'a> {
         outline: [bool; 4],
     ) -> Option<Vec<Piece>> {
         let along = |lines: &[Line]| split(face, surface, lines, outline, self.grading);
-        let along_rims = || {
-            let feet = rims.iter().map(|rim| rim.foot);
-            let mut pieces = along(&lines.iter().copied().chain(feet).collect::<Vec<_>>())?;
-            for piece in &mut pieces {
-                let corners = piece.corners().iter().map(|at| face.flatten(*at));
-                piece.clearance = clearance(rims, &corners.collect::<Vec<DVec2>>()) as f32;
-            }
-            Some(pieces)
+        if rims.is_empty() {
+            return along(lines);
+        }
+        let feet = rims.iter().map(|rim| rim.foot);
+        let Some(mut pieces) = along(&lines.iter().copied().chain(feet).collect::<Vec<_>>()) else {
+            self.uncut.fetch_add(1, Ordering::Relaxed);
+            return along(lines);
         };
-        let pieces = (!rims.is_empty()).then(along_rims).flatten();
-        pieces.or_else(|| along(lines))
+        let rims = Rims::of(rims.to_vec());
+        for piece in &mut pieces {
+            let corners = piece.corners().iter().map(|at| face.flatten(*at));
+            piece.clearance = rims.clearance(&corners.collect::<Vec<DVec2>>()) as f32;
+        }
+        Some(pieces)
     }
 }
 
