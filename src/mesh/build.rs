@@ -3,7 +3,7 @@
 use super::patches::{Known, MOST_ALONG};
 use super::{Elements, Lattice, Mesh, Patch, Patches, Vertices, contact};
 use crate::geometry::Frame;
-use crate::radiometry::exitance_from_radiance;
+use crate::radiometry::{Spectrum, exitance_from_radiance};
 use crate::scene::{Scene, Sides};
 use rustc_hash::FxHashMap;
 
@@ -21,7 +21,7 @@ pub struct MeshLimits {
 
 impl Mesh {
     /// The coarsest mesh: surfaces are split along the lines in which others meet them; then a patch for each radiating side
-    /// of each piece, a grid of nearly square elements on each quad patch, one element on each triangle, split until
+    /// of each piece, unless another surface has it, a grid of nearly square elements on each quad patch, one element on each triangle, split until
     /// `limits.initial_size` holds.
     pub fn new(scene: &Scene, limits: MeshLimits) -> Self {
         let frame = scene.frame();
@@ -39,7 +39,7 @@ impl Mesh {
         } else {
             0.0
         };
-        let mut known = Known::default();
+        let (mut known, mut covered) = (Known::default(), 0);
         for piece in pieces.list {
             let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
@@ -49,8 +49,16 @@ impl Mesh {
             front.outline = piece.outline;
             front.reflectance = material.reflectance;
             front.exitance = exitance_from_radiance(material.emitted_radiance);
-            mesh.add_patch(front, shortest, &mut known);
-            if surface.sides == Sides::Both {
+            let [is_front_covered, is_back_covered] = piece.covered;
+            // What emits is never left out.
+            if is_front_covered && front.exitance == Spectrum::ZERO {
+                covered += 1;
+            } else {
+                mesh.add_patch(front, shortest, &mut known);
+            }
+            if surface.sides == Sides::Both && is_back_covered {
+                covered += 1;
+            } else if surface.sides == Sides::Both {
                 corners.reverse();
                 let mut back = Patch::new(piece.surface, surface.polygon, &corners, true);
                 back.outline = reversed(piece.outline, corners.len());
@@ -63,6 +71,7 @@ impl Mesh {
                     .extend(sides.map(|side| (side, piece.clearance)));
             }
         }
+        mesh.covered_sides = covered;
         drop(known);
         mesh.patches.shrink();
         mesh.make_grids();
@@ -90,6 +99,7 @@ impl Mesh {
             clearances: FxHashMap::default(),
             unsplit_contacts: 0,
             uncut_gaps: 0,
+            covered_sides: 0,
         }
     }
 

@@ -73,6 +73,8 @@ pub struct Mesh {
     pub unsplit_contacts: usize,
     /// Surfaces that could not be cut along the rims of thin gaps in front of them: light may end there in teeth.
     pub uncut_gaps: usize,
+    /// Sides of pieces that have no patch, as they lie in another surface that radiates to the same side.
+    pub covered_sides: usize,
 }
 
 impl Mesh {

@@ -141,19 +141,26 @@ fn warn_of_losses(report: &mut Report) {
 /// What the reader found suspicious, and what could not be meshed as it should.
 fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let mut warnings = scene.warnings.clone();
-    for (count, what) in [
+    for (count, of, what) in [
         (
             mesh.unsplit_contacts,
+            "surface",
             "not split where others meet: light may leak along the contacts",
         ),
         (
             mesh.uncut_gaps,
+            "surface",
             "not cut below the rims of what is close in front: light may end there in teeth",
+        ),
+        (
+            mesh.covered_sides,
+            "side",
+            "in the plane of another that faces the same way left out: light would be reflected there twice",
         ),
     ] {
         if count > 0 {
             let plural = if count == 1 { "" } else { "s" };
-            warnings.push(format!("{count} surface{plural} {what}"));
+            warnings.push(format!("{count} {of}{plural} {what}"));
         }
     }
     warnings

@@ -4,6 +4,7 @@ mod contacts;
 mod gaps;
 mod leaks;
 mod none;
+mod overlaps;
 mod random;
 mod regions;
 mod setup;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use radiosity::geometry::polygon::{diameter, vector_area};
-use radiosity::mesh::{Mesh, MeshLimits, Regions, regions};
+use radiosity::mesh::{Mesh, MeshLimits, Regions, regions, split_at_contacts};
 use radiosity::scene::{Corners, Material, Scene, Sides, Surface};
 
 /// A scene of the given triangles and quads, each with vertices of its own; all white, from the front.
@@ -143,10 +143,12 @@ pub fn sphere(radius: f64, rings: u32) -> Polygons {
     sphere
 }
 
-/// The front patches of the coarsest mesh, by surface, in scene coordinates; and the mesh.
+/// What surfaces are split into, by surface, in scene coordinates; and the coarsest mesh.
 pub struct Pieces {
     pub mesh: Mesh,
     pub of: Vec<Vec<Vec<DVec3>>>,
+    /// By surface how much of the sides of its pieces lies on its border.
+    outlined: Vec<f64>,
 }
 
 /// The footprint of a box of this size around the origin.
@@ -179,17 +181,20 @@ pub fn pieces_down_to(scene: &Scene, min_size: f64) -> Pieces {
             min_size,
         },
     );
-    let mut of = vec![Vec::new(); scene.surfaces.len()];
-    for patch in mesh.patches.iter().filter(|patch| !patch.back) {
-        let corners = patch
-            .corners()
-            .iter()
-            .map(|p| mesh.frame.leave(*p))
-            .collect();
-        of[patch.surface as usize].push(corners);
-    }
     let regions = regions(scene, &mesh.frame);
-    let pieces = Pieces { mesh, of };
+    let smallest = min_size * mesh.frame.extent();
+    let (mut of, mut outlined) = (
+        vec![Vec::new(); scene.surfaces.len()],
+        vec![0.0; scene.surfaces.len()],
+    );
+    for piece in split_at_contacts(scene, &mesh.frame, &regions, smallest).list {
+        let corners = piece.corners().iter().map(|p| mesh.frame.leave(*p));
+        let corners: Vec<DVec3> = corners.collect();
+        let outline = sides(&corners).zip(piece.outline).filter(|side| side.1);
+        outlined[piece.surface as usize] += outline.map(|side| side.0).sum::<f64>();
+        of[piece.surface as usize].push(corners);
+    }
+    let pieces = Pieces { mesh, of, outlined };
     for (number, members) in members(&regions, scene).iter().enumerate() {
         match members[..] {
             [] => assert!(pieces.of[number].is_empty(), "surface {number}"),
@@ -283,14 +288,8 @@ fn assert_tiled(scene: &Scene, pieces: &Pieces, number: usize) {
             assert!(inside, "surface {number}: {piece:?} leaves it");
         }
     }
-    let patches = pieces.mesh.patches.of_surface(number as u32);
-    let patches = patches.map(|(_, p)| p).filter(|p| !p.back);
-    let outline: f64 = patches
-        .flat_map(|p| Vec::from_iter(sides(p.corners()).zip(p.outline)))
-        .filter(|s| s.1)
-        .map(|s| s.0)
-        .sum();
-    let perimeter: f64 = sides(&whole).sum::<f64>() * pieces.mesh.frame.scale();
+    let outline = pieces.outlined[number];
+    let perimeter: f64 = sides(&whole).sum();
     assert!(
         (outline / perimeter - 1.0).abs() < 1e-6,
         "surface {number}: an outline of {outline}, not {perimeter}"

@@ -4,7 +4,7 @@ use super::common::closed_form::between_opposite_squares;
 use super::common::shapes::{add_cuboid, add_grey, add_level, empty};
 use super::{bundled, draft, engines, solved, solved_by};
 use glam::DVec3;
-use radiosity::scene::Scene;
+use radiosity::scene::{Scene, Sides};
 use radiosity::solver::{Options, Preset};
 
 /// A unit square that emits 1 W/m² and, 1 m above it, a black one that faces it.
@@ -117,5 +117,42 @@ fn nothing_is_lost_on_sheets_that_lie_back_to_back() {
             assert_eq!(power.escaped, 0.0, "by {engine}");
             assert!(power.residual.abs() <= 0.02 * power.emitted, "{power:?}");
         }
+    }
+}
+
+/// A two-sided column stands from floor to ceiling: inside, its ends are where floor and ceiling are, and see what these see.
+#[test]
+fn light_is_reflected_once_where_surfaces_lie_in_one_another() {
+    let mut scene = empty();
+    let grey = add_grey(&mut scene, 0.7, 0.0);
+    let lamp = add_grey(&mut scene, 0.5, 1.0);
+    add_cuboid(
+        &mut scene,
+        grey,
+        [DVec3::ZERO, DVec3::new(4.0, 3.0, 4.0)],
+        true,
+    );
+    let column = scene.surfaces.len();
+    let ends = [DVec3::new(2.0, 0.0, 0.5), DVec3::new(3.0, 3.0, 1.5)];
+    add_cuboid(&mut scene, grey, ends, false);
+    for surface in &mut scene.surfaces[column..] {
+        surface.sides = Sides::Both;
+    }
+    // Half of it shines into the column.
+    add_level(&mut scene, lamp, [[1.5, 0.7], [2.5, 1.3]], 2.9, false);
+    for cluster_from in [usize::MAX, 0] {
+        let options = Options {
+            cluster_from,
+            ..draft()
+        };
+        let report = solved(&scene, options).report;
+        let power = &report.power;
+        assert!(power.residual.abs() <= 0.02 * power.emitted, "{power:?}");
+        let warning = "2 sides in the plane of another that faces the same way left out";
+        assert!(
+            report.warnings.iter().any(|w| w.contains(warning)),
+            "{:?}",
+            report.warnings
+        );
     }
 }

@@ -13,6 +13,7 @@
 //!    continue one another.
 //! 5. [`tile`]: a constrained Delaunay triangulation along them; [`quads`] joins triangles where nothing separates them,
 //!    and [`grade`] adds points where needles remain.
+//! 6. [`overlap`]: of pieces that lie in one another and face alike, one radiates.
 //!
 //! Everything happens in the frame, in double precision, with one tolerance, [`REACH`], but for gaps.
 
@@ -25,6 +26,7 @@ mod index;
 mod lines;
 mod near;
 mod outline;
+mod overlap;
 mod quads;
 mod regions;
 mod shapes;
@@ -83,6 +85,8 @@ pub struct Piece {
     pub outline: [bool; 4],
     /// How far from its border light is to be evaluated, at least; in the frame.
     pub clearance: f32,
+    /// Whether its front, and its back, lie in another surface that radiates to the same side.
+    pub covered: [bool; 2],
 }
 
 impl Piece {
@@ -96,6 +100,7 @@ impl Piece {
             count,
             outline,
             clearance: 0.0,
+            covered: [false; 2],
         }
     }
 
@@ -155,6 +160,10 @@ pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions, smallest: f64) ->
             }
         }
     }
+    pieces
+        .list
+        .par_iter_mut()
+        .for_each(|piece| piece.covered = splitter.covered(piece));
     pieces.uncut = splitter.uncut.into_inner();
     pieces
 }

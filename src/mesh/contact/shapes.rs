@@ -3,12 +3,13 @@
 use super::Piece;
 use super::outline::Outlines;
 use crate::geometry::Frame;
-use crate::scene::{Scene, Surface};
+use crate::scene::{Material, Scene, Surface};
 use glam::DVec3;
 
 /// The surfaces of a scene, in the frame.
 pub(super) struct Shapes<'a> {
     pub surfaces: &'a [Surface],
+    materials: &'a [Material],
     pub positions: Vec<DVec3>,
     outlines: Outlines,
 }
@@ -17,6 +18,7 @@ impl<'a> Shapes<'a> {
     pub fn new(scene: &'a Scene, frame: &Frame) -> Self {
         Self {
             surfaces: &scene.surfaces,
+            materials: &scene.materials,
             positions: scene.positions_in(frame),
             outlines: Outlines::new(&scene.surfaces),
         }
@@ -26,6 +28,10 @@ impl<'a> Shapes<'a> {
         let corners = self.surfaces[surface as usize].corners;
         let corners = corners.indices().iter();
         corners.map(|v| self.positions[*v as usize]).collect()
+    }
+
+    pub fn emits(&self, surface: u32) -> bool {
+        self.materials[self.surfaces[surface as usize].material as usize].emits()
     }
 
     pub fn outline(&self, surface: u32) -> [bool; 4] {
