@@ -9,8 +9,8 @@ use super::{Piece, Splitter};
 use crate::geometry::polygon;
 use crate::scene::Sides;
 
-/// The cosine of the angle between planes that are one.
-const ALIGNED: f64 = 1.0 - 1e-6;
+/// The least cosine of the angle between planes that are one.
+const PARALLEL: f64 = 1.0 - 1e-6;
 
 impl Splitter<'_> {
     /// Which sides of a piece, its front and its back, lie in a surface that comes before it.
@@ -29,7 +29,7 @@ impl Splitter<'_> {
             };
             let facing = face.facing(corners);
             let foot = [face.flatten(centre)];
-            if facing.abs() < ALIGNED
+            if facing.abs() < PARALLEL
                 || face.height(centre).abs() > face.thickness
                 || face.beside(&foot)
             {
