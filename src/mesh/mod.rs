@@ -16,6 +16,7 @@ mod fan;
 mod grid;
 mod integral;
 mod lattice;
+mod missing;
 mod patch;
 mod patches;
 mod refine;

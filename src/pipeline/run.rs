@@ -4,7 +4,7 @@ use super::report::{blank, take_in, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 use crate::solution::{Continuation, Report, Solution};
 use crate::solver::{
     Estimate, Light, Observer, Options, Outcome, Solver, StopReason, memory_for, occluders,
@@ -159,6 +159,7 @@ impl Run {
             .scene
             .differs_but_in_emission(&scene)
             .map_err(SolveError::OtherScene)?;
+        check_emitters(&scene, &solution.mesh)?;
         let exitance = |patch: &Patch| {
             let surface = &scene.surfaces[patch.surface as usize];
             let material = &scene.materials[surface.material as usize];
@@ -294,6 +295,17 @@ fn check_memory(
 
 /// Why there is always a solution, and one that can go on.
 const KEPT: &str = "a run keeps its solution and what it takes to go on";
+
+/// Refuses emitters that the mesh has no patches of: they did not emit when it was made, and lay in other surfaces.
+fn check_emitters(scene: &Scene, mesh: &Mesh) -> Result<(), SolveError> {
+    let emits = |surface: &Surface| scene.materials[surface.material as usize].emits();
+    match mesh.missing(scene, emits) {
+        0 => Ok(()),
+        lost => Err(SolveError::OtherScene(format!(
+            "{lost} of them lie in the plane of other surfaces and were left out when nothing shone there"
+        ))),
+    }
+}
 
 /// Whether there may be something to do where all was done under options `before`.
 fn differs(now: &Options, before: &Options) -> bool {

@@ -2,6 +2,7 @@
 
 use super::common::ENGINE;
 use super::common::reference::{Deviation, Sample, table};
+use super::common::shapes::{add_grey, add_level};
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
 use radiosity::mesh::{Element, Lattice, Vertex};
@@ -236,6 +237,25 @@ fn another_scene_is_refused() {
     assert!(less.contains("3 surfaces"), "{less}");
     let brighter = refusal(&|scene| scene.materials[0].reflectance *= 0.5);
     assert!(brighter.contains("reflectance"), "{brighter}");
+}
+
+/// The floor has the light there.
+#[test]
+fn a_lamp_in_a_floor_cannot_be_lit_later() {
+    let mut scene = bundled("cornell-box");
+    let lamp = add_grey(&mut scene, 0.5, 0.0);
+    add_level(
+        &mut scene,
+        lamp,
+        [[450.0, 100.0], [500.0, 150.0]],
+        0.0,
+        true,
+    );
+    let solution = solved(&scene, draft());
+    scene.materials[lamp as usize].emitted_radiance = Spectrum::ONE;
+    let mut run = Run::resume(solution, settings(draft(), ENGINE, 0)).expect("can be resumed");
+    let error = run.relight(scene).expect_err("no patch").to_string();
+    assert!(error.contains("1 of them lie"), "{error}");
 }
 
 #[test]
