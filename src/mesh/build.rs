@@ -39,7 +39,7 @@ impl Mesh {
         } else {
             0.0
         };
-        let (mut known, mut covered) = (Known::default(), 0);
+        let mut known = Known::default();
         for piece in pieces.list {
             let surface = &scene.surfaces[piece.surface as usize];
             let material = &scene.materials[surface.material as usize];
@@ -52,12 +52,12 @@ impl Mesh {
             let [is_front_covered, is_back_covered] = piece.covered;
             // What emits is never left out.
             if is_front_covered && front.exitance == Spectrum::ZERO {
-                covered += 1;
+                mesh.covered_sides += 1;
             } else {
                 mesh.add_patch(front, shortest, &mut known);
             }
             if surface.sides == Sides::Both && is_back_covered {
-                covered += 1;
+                mesh.covered_sides += 1;
             } else if surface.sides == Sides::Both {
                 corners.reverse();
                 let mut back = Patch::new(piece.surface, surface.polygon, &corners, true);
@@ -71,7 +71,6 @@ impl Mesh {
                     .extend(sides.map(|side| (side, piece.clearance)));
             }
         }
-        mesh.covered_sides = covered;
         drop(known);
         mesh.patches.shrink();
         mesh.make_grids();

@@ -9,13 +9,13 @@ use super::error::{ErrorModel, Squares};
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::{Shooter, evaluate};
+use super::sums::in_blocks;
 use super::tiling::Tiling;
 use crate::form_factor::{Receiver, Sampler, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// How much finer the thresholds ε_fe and ε_fd of the second look are.
@@ -141,7 +141,7 @@ impl Solver<'_> {
         let levels = self.options.source_levels();
         // As bright as thresholds expect: what sampling costs does not depend on the unit of light.
         let even = vec![Spectrum::splat(self.reference as f32); 1 << (2 * levels)];
-        let looked_at = |&patch: &usize| {
+        let look_at = |patch: usize| {
             let of = self.mesh.patches.at(patch);
             let bright = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &even));
             let seen = evaluate(plain, &bright, receivers).0;
@@ -155,18 +155,15 @@ impl Solver<'_> {
         };
         let mut gathered = vec![Power::ZERO; receivers.len()];
         let mut factors = vec![0.0; receivers.len()];
-        let patches: Vec<usize> = (0..self.mesh.patches.len()).collect();
-        for some in patches.chunks(SIDE_BY_SIDE) {
-            let looked_at = some.par_iter().with_max_len(1).map(looked_at);
-            for (seen, arrived) in looked_at.collect::<Vec<_>>() {
-                for (factor, gather) in factors.iter_mut().zip(seen) {
-                    *factor += f64::from(gather.irradiance.x) / self.reference;
-                }
-                for (sum, gather) in gathered.iter_mut().zip(arrived) {
-                    *sum += gather.irradiance.as_dvec3();
-                }
+        let patches = self.mesh.patches.len();
+        in_blocks(SIDE_BY_SIDE, patches, look_at, |(seen, arrived)| {
+            for (factor, gather) in factors.iter_mut().zip(seen) {
+                *factor += f64::from(gather.irradiance.x) / self.reference;
             }
-        }
+            for (sum, gather) in gathered.iter_mut().zip(arrived) {
+                *sum += gather.irradiance.as_dvec3();
+            }
+        });
         (gathered, factors)
     }
 

@@ -6,16 +6,29 @@ use rayon::prelude::*;
 /// Terms that are found before any of them is added: all at once would be as large a list as those that the mesh is made of.
 const BLOCK: usize = 1 << 15;
 
+/// A block is shared out in so many parts at the most.
+const PARTS: usize = 512;
+
 /// Finds each of `count` terms, and lets `add` have them in order.
 pub(super) fn in_order<T: Send>(
+    count: usize,
+    term: impl Fn(usize) -> T + Sync,
+    add: impl FnMut(T),
+) {
+    in_blocks(BLOCK, count, term, add);
+}
+
+/// The same of terms that are large: `block` of them at a time.
+pub(super) fn in_blocks<T: Send>(
+    block: usize,
     count: usize,
     term: impl Fn(usize) -> T + Sync,
     mut add: impl FnMut(T),
 ) {
     let mut terms = Vec::new();
-    for first in (0..count).step_by(BLOCK) {
-        let block = first..count.min(first + BLOCK);
-        let found = block.into_par_iter().with_min_len(64).map(&term);
+    for first in (0..count).step_by(block) {
+        let numbers = (first..count.min(first + block)).into_par_iter();
+        let found = numbers.with_min_len(block / PARTS).map(&term);
         found.collect_into_vec(&mut terms);
         terms.drain(..).for_each(&mut add);
     }

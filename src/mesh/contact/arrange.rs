@@ -199,7 +199,8 @@ impl<'a> Nodes<'a> {
 
     /// Where edges cross each other's inside; makes the nodes there.
     fn crossings_of(&mut self, edges: &[[u32; 2]]) -> Vec<Stop> {
-        let lines: Vec<Line> = edges.iter().map(|edge| self.ends(*edge)).collect();
+        let index = Index::of(edges.iter().map(|edge| self.ends(*edge)));
+        let lines = &index.list;
         let low = |edge: &usize| lines[*edge][0].x.min(lines[*edge][1].x);
         let mut from_left: Vec<usize> = (0..edges.len()).collect();
         from_left.sort_by(|x, y| low(x).total_cmp(&low(y)));
@@ -207,7 +208,6 @@ impl<'a> Nodes<'a> {
         for (place, edge) in from_left.iter().enumerate() {
             places[*edge] = place;
         }
-        let index = Index::of(lines.iter().copied());
         let mut stops = Vec::new();
         for first in from_left {
             let near = index.near(lines[first], 0.0);

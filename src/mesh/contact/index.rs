@@ -7,7 +7,7 @@ use rstar::{AABB, RTree};
 
 /// Lines in the order in which they came.
 pub(super) struct Index {
-    list: Vec<Line>,
+    pub list: Vec<Line>,
     tree: RTree<Numbered>,
 }
 
