@@ -173,17 +173,15 @@ impl Run {
         for (unshot, patch) in unshot.zip(solution.mesh.patches.iter()) {
             *unshot += exitance(&patch) - patch.exitance;
         }
-        solution.mesh.patches.relight(exitance);
-        if solution
-            .mesh
-            .patches
-            .iter()
-            .all(|p| p.exitance == Spectrum::ZERO)
-        {
+        let patches = &mut solution.mesh.patches;
+        patches.relight(exitance);
+        if patches.iter().all(|p| p.exitance == Spectrum::ZERO) {
             solution.light = Light::new(&solution.mesh);
+            known.course.go_dark();
+        } else {
+            known.course.reopen();
         }
         known.scene = scene;
-        known.course.reopen();
         Ok(())
     }
 

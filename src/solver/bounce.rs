@@ -44,7 +44,7 @@ impl Solver<'_> {
             shooter: &shooter,
             sign,
         };
-        if self.light.is_unreflected() {
+        if self.light.is_all_direct() {
             self.course.direct = Some(Direct {
                 irradiance: self.light.irradiance.clone(),
                 lost: self.course.lost,

@@ -143,20 +143,31 @@ impl Course {
         }
     }
 
-    /// Goes on with shooting if all was shot: the options have become stricter, or the emitters are others.
+    /// Goes on with shooting: the options have become stricter, or the emitters are others.
     pub fn reopen(&mut self) {
-        let all_was_shot = match &self.stage {
-            Stage::Finished | Stage::Gathering(_) | Stage::Settling(_) => true,
-            // What was unshot before says nothing any more.
-            Stage::Bounced(_) => true,
-            Stage::Waving(wave) => wave.is_whole(),
-            Stage::Shooting | Stage::Refining(_) => false,
-        };
-        if all_was_shot {
+        // A shot counts as shot from its beginning, and is refined for to its end. A wave does when it has arrived everywhere, and
+        // sets out anew with what is unshot by then.
+        if !matches!(self.stage, Stage::Refining(_)) {
             self.stage = Stage::Shooting;
         }
         self.meshing_ended = None;
         self.direct = None;
+    }
+
+    /// Nothing is shot any more, and nothing lost: all emitters went out, and the light with them. What it took stays counted.
+    pub fn go_dark(&mut self) {
+        let Self {
+            shots,
+            meshing_shots,
+            rays,
+            ..
+        } = *self;
+        *self = Self {
+            shots,
+            meshing_shots,
+            rays,
+            ..Self::default()
+        };
     }
 
     /// Checks a course that was read against the mesh that it belongs to. The error says what does not fit.

@@ -118,9 +118,10 @@ impl Light {
         self.exitance_unshot.iter().any(unshot)
     }
 
-    /// Whether nothing that has arrived was shot on.
-    pub(super) fn is_unreflected(&self) -> bool {
-        self.irradiance == self.unshot
+    /// Whether all that is emitted, and that alone, has arrived.
+    pub(super) fn is_all_direct(&self) -> bool {
+        let emitted = Sign::ALL.iter().all(|sign| !self.is_direct(*sign));
+        emitted && self.irradiance == self.unshot
     }
 
     /// Adds what arrives at each vertex, all of it unshot.

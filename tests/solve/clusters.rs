@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Clusters however few patches there are.
-fn clustered(options: Options) -> Options {
+pub(super) fn clustered(options: Options) -> Options {
     Options {
         cluster_from: 0,
         ..options

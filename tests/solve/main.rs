@@ -14,6 +14,7 @@ mod furnace;
 mod integral;
 mod path_traced;
 mod places;
+mod relight;
 mod resume;
 mod small_objects;
 mod stopping;

@@ -1,12 +1,9 @@
-//! A solve that is left and taken up again: the same bits, no work twice, other emitters.
+//! A solve that is left and taken up again: the same bits, no work twice.
 
 use super::common::ENGINE;
-use super::common::reference::{Deviation, Sample, table};
-use super::common::shapes::{add_grey, add_level};
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
 use radiosity::mesh::{Element, Lattice, Vertex};
-use radiosity::radiometry::Spectrum;
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
 use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
@@ -17,7 +14,7 @@ use radiosity::{Run, Settings, SolveError, solve};
 const HEADER: usize = 24;
 
 /// Lets some batches of work be done, then stops.
-struct Batches(usize);
+pub(super) struct Batches(pub usize);
 
 impl Observer for Batches {
     fn progress(&mut self, _: &Progress) -> Control {
@@ -120,22 +117,6 @@ fn the_ledger_closes_wherever_a_solve_is_left() {
     );
 }
 
-/// Irradiance at points of the Cornell box, to hold other solutions against.
-fn samples(of: &Solution) -> Vec<Sample> {
-    let prober = Prober::new(of);
-    let sample = |known: Sample| Sample {
-        irradiance: prober
-            .probe(known.point, known.normal)
-            .expect("lies on a surface")
-            .irradiance
-            .as_dvec3(),
-        standard_error: DVec3::ZERO,
-        ..known
-    };
-    let points = table("cornell_irradiance.csv").into_iter();
-    points.map(sample).collect()
-}
-
 #[test]
 fn a_finished_solve_goes_on_to_a_tighter_tolerance() {
     let scene = bundled("cornell-box");
@@ -168,94 +149,6 @@ fn a_finished_solve_with_the_same_options_has_nothing_to_do() {
     let mut run = Run::resume(first, settings(draft(), ENGINE, 0)).expect("can be resumed");
     assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
     assert!(bits(run.finish()) == known);
-}
-
-/// The Cornell box; what its short box emits is told.
-fn with_a_glowing_box(radiance: f32) -> Scene {
-    let mut scene = bundled("cornell-box");
-    let mut material = scene.materials[scene.surfaces[8].material as usize].clone();
-    material.name = "glowing".into();
-    material.emitted_radiance = Spectrum::splat(radiance);
-    scene.materials.push(material);
-    let last = scene.materials.len() as u32 - 1;
-    for surface in &mut scene.surfaces[8..13] {
-        surface.material = last;
-    }
-    scene
-}
-
-#[test]
-fn other_emitters_are_shot_as_the_light_that_they_give_more_or_less() {
-    let standard = Preset::Standard.options();
-    for (before, after) in [(0.0, 0.4), (0.4, 0.1), (0.4, 0.0)] {
-        let anew = samples(&solved(&with_a_glowing_box(after), standard.clone()));
-        let solution = solved(&with_a_glowing_box(before), draft());
-        let mut run = Run::resume(solution, settings(draft(), ENGINE, 0)).expect("can be resumed");
-        run.relight(with_a_glowing_box(after))
-            .expect("only the light is another");
-        assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::Converged));
-        let relit = run.finish();
-        let deviation = Deviation::of(&relit, &anew);
-        // The error of a draft of this scene.
-        assert!(deviation.n_rms < 0.04, "{before} to {after}: {deviation:?}");
-        let power = &relit.report.power;
-        assert!(power.residual.abs() < 0.03 * power.emitted, "{power:?}");
-        assert!(power.unshot.abs() < 0.02 * power.emitted, "{power:?}");
-    }
-}
-
-#[test]
-fn with_all_emitters_off_it_is_dark() {
-    let mut scene = bundled("cornell-box");
-    let mut run =
-        Run::resume(solved(&scene, draft()), settings(draft(), ENGINE, 0)).expect("can be resumed");
-    for material in &mut scene.materials {
-        material.emitted_radiance = Spectrum::ZERO;
-    }
-    run.relight(scene).expect("only the light is another");
-    assert_eq!(run.go(&mut Silent).ok(), Some(StopReason::NoEmitter));
-    let light = run.finish().light;
-    assert!(light.irradiance.iter().all(|e| *e == Spectrum::ZERO));
-}
-
-#[test]
-fn another_scene_is_refused() {
-    let scene = bundled("cornell-box");
-    let solution = solved(&scene, draft());
-    let refusal = |change: &dyn Fn(&mut Scene)| {
-        let mut other = scene.clone();
-        change(&mut other);
-        let how = settings(draft(), ENGINE, 0);
-        let mut run = Run::resume(solution.clone(), how).expect("can be resumed");
-        let error = run.relight(other).expect_err("is another scene");
-        assert!(matches!(error, SolveError::OtherScene(_)), "{error}");
-        error.to_string()
-    };
-    let moved = refusal(&|scene| scene.vertices[0].x += 1.0);
-    assert!(moved.contains("corners"), "{moved}");
-    let less = refusal(&|scene| scene.surfaces.truncate(3));
-    assert!(less.contains("3 surfaces"), "{less}");
-    let brighter = refusal(&|scene| scene.materials[0].reflectance *= 0.5);
-    assert!(brighter.contains("reflectance"), "{brighter}");
-}
-
-/// The floor has the light there.
-#[test]
-fn a_lamp_in_a_floor_cannot_be_lit_later() {
-    let mut scene = bundled("cornell-box");
-    let lamp = add_grey(&mut scene, 0.5, 0.0);
-    add_level(
-        &mut scene,
-        lamp,
-        [[450.0, 100.0], [500.0, 150.0]],
-        0.0,
-        true,
-    );
-    let solution = solved(&scene, draft());
-    scene.materials[lamp as usize].emitted_radiance = Spectrum::ONE;
-    let mut run = Run::resume(solution, settings(draft(), ENGINE, 0)).expect("can be resumed");
-    let error = run.relight(scene).expect_err("no patch").to_string();
-    assert!(error.contains("1 of them lie"), "{error}");
 }
 
 #[test]
