@@ -105,6 +105,12 @@ impl Light {
         })
     }
 
+    /// What is unshot of a patch's own emission of one sign, with the sign; power as above.
+    pub(super) fn own_unshot(&self, mesh: &Mesh, patch: usize, sign: Sign) -> f64 {
+        let own = sign.part(self.exitance_unshot[patch]) * sign.factor();
+        f64::from(own.element_sum()) * mesh.patches.at(patch).area
+    }
+
     /// Whether all that a patch has unshot of one sign is its own.
     pub(super) fn is_own(&self, mesh: &Mesh, patch: usize, sign: Sign) -> bool {
         let unshot = |v: u32| sign.part(self.unshot[v as usize]);

@@ -14,7 +14,7 @@ use super::parts::{Laps, Parts};
 use super::shoot::Shooter;
 use super::sums::in_order;
 use super::tiling::Tiling;
-use super::volley::{side_by_side, strongest};
+use super::volley::{Giver, side_by_side, strongest};
 use super::wave::EARLY;
 use crate::mesh::Mesh;
 use crate::radiometry::Power;
@@ -222,13 +222,13 @@ impl<'a> Solver<'a> {
         let left = self.options.max_shots.map_or(u64::MAX, |most| most - shots);
         let most = usize::try_from(left).unwrap_or(usize::MAX);
         let givers = strongest(&self.unshot_powers(), most.min(side_by_side(&self.mesh)));
+        let untested = self.untested(&givers);
         self.laps.lap(|parts| &mut parts.selecting);
-        let strongest = givers[0];
-        let power = strongest.power / emitted;
-        if self.meshes(power) {
-            self.shoot_from(strongest.patch, strongest.sign, power);
+        if untested == 0 {
+            let Giver { patch, sign, power } = givers[0];
+            self.shoot_from(patch, sign, power / emitted);
         } else {
-            self.volley(&givers);
+            self.volley(&givers[..untested]);
         }
         None
     }

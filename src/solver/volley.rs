@@ -74,6 +74,35 @@ impl Solver<'_> {
         }
     }
 
+    /// How many of the first of `givers` go without a test of the mesh. Of emitters too weak for one, each with which another
+    /// [`meshing_power`](super::Options::meshing_power) of direct light is shot has it all the same: many small lights refine like a
+    /// large one.
+    pub(super) fn untested(&self, givers: &[Giver]) -> usize {
+        if self.course.meshing_ended.is_some() {
+            return givers.len();
+        }
+        let emitted = self.emitted().element_sum();
+        let mut direct = self.direct_shot() / emitted;
+        let is_tested = |giver: &Giver| {
+            let parts = |power: f64| (power / self.options.meshing_power).floor();
+            let before = parts(direct);
+            direct += self.light.own_unshot(&self.mesh, giver.patch, giver.sign) / emitted;
+            self.meshes(giver.power / emitted) || parts(direct) != before
+        };
+        givers.iter().position(is_tested).unwrap_or(givers.len())
+    }
+
+    /// What emitters have shot of what they emit; nothing more to come counts as nothing.
+    fn direct_shot(&self) -> f64 {
+        if Sign::ALL.iter().all(|sign| !self.light.is_direct(*sign)) {
+            return 0.0;
+        }
+        let patches = self.mesh.patches.iter().zip(&self.light.exitance_unshot);
+        patches
+            .map(|(patch, unshot)| f64::from((patch.exitance - *unshot).element_sum()) * patch.area)
+            .sum()
+    }
+
     /// A shot from each of `givers`; none of them tests the mesh.
     pub(super) fn volley(&mut self, givers: &[Giver]) {
         let given = self.given(givers, &self.light);

@@ -1,10 +1,13 @@
 //! Small things in the air: a shadow that lies between the vertices of the first mesh is found.
 
+use super::common::ENGINE;
 use super::common::shapes::{add_grey, add_level, empty};
 use super::{engines, solved_by};
 use glam::DVec3;
+use radiosity::scene::Scene;
 use radiosity::solution::Prober;
 use radiosity::solver::Preset;
+use radiosity::visibility::EngineChoice;
 use std::f64::consts::PI;
 
 /// A light that faces down.
@@ -43,39 +46,53 @@ fn squares() -> Vec<([f64; 2], f64)> {
     places.zip(sides.into_iter().cycle()).collect()
 }
 
-#[test]
-fn the_shadows_of_small_things_are_found() {
+/// A dark floor below the squares, and a light of so many tiles along each side.
+fn scene(tiles: u32) -> Scene {
     let mut scene = empty();
-    let grey = add_grey(&mut scene, 0.0, 0.0);
-    let light = add_grey(&mut scene, 0.0, 1.0);
-    add_level(&mut scene, grey, [[-2.0, -2.0], [2.0, 2.0]], 0.0, true);
-    let half = 0.5 * LIGHT;
-    add_level(
-        &mut scene,
-        light,
-        [[-half, -half], [half, half]],
-        LIGHT_HEIGHT,
-        false,
-    );
+    let dark = add_grey(&mut scene, 0.0, 0.0);
+    // As they differ by a hair they are not meshed as one.
+    let lights = [0.9995, 1.0005].map(|exitance| add_grey(&mut scene, 0.0, exitance));
+    add_level(&mut scene, dark, [[-2.0, -2.0], [2.0, 2.0]], 0.0, true);
+    let at = |i: u32| LIGHT * (f64::from(i) / f64::from(tiles) - 0.5);
+    for (i, j) in (0..tiles).flat_map(|i| (0..tiles).map(move |j| (i, j))) {
+        let light = lights[(i + j) as usize % 2];
+        let tile = [[at(i), at(j)], [at(i + 1), at(j + 1)]];
+        add_level(&mut scene, light, tile, LIGHT_HEIGHT, false);
+    }
     for ([x, z], side) in squares() {
         let half = 0.5 * side;
         let span = [[x - half, z - half], [x + half, z + half]];
-        add_level(&mut scene, grey, span, HEIGHT, true);
+        add_level(&mut scene, dark, span, HEIGHT, true);
     }
+    scene
+}
+
+fn assert_shadows(scene: &Scene, engine: EngineChoice) {
+    let solution = solved_by(scene, Preset::Standard.options(), engine, 0);
+    let prober = Prober::new(&solution);
+    for (place, side) in squares() {
+        let point = behind(place);
+        let found = prober.probe(point, DVec3::Y).expect("lies on the floor");
+        // The smallest has no umbra, and the dark middle of its shadow is as wide as the finest elements.
+        let bound = if side > 0.03 { 0.01 } else { 0.25 };
+        let lit = exact(point, place, 0.0);
+        let error = (f64::from(found.irradiance.x) - exact(point, place, side)) / lit;
+        assert!(
+            error.abs() <= bound,
+            "{engine}: behind the square of {side} m at {place:?} {error:+.3} of the light"
+        );
+    }
+}
+
+#[test]
+fn the_shadows_of_small_things_are_found() {
     for engine in engines() {
-        let solution = solved_by(&scene, Preset::Standard.options(), engine, 0);
-        let prober = Prober::new(&solution);
-        for (place, side) in squares() {
-            let point = behind(place);
-            let found = prober.probe(point, DVec3::Y).expect("lies on the floor");
-            // The smallest has no umbra, and the dark middle of its shadow is as wide as the finest elements.
-            let bound = if side > 0.03 { 0.01 } else { 0.25 };
-            let lit = exact(point, place, 0.0);
-            let error = (f64::from(found.irradiance.x) - exact(point, place, side)) / lit;
-            assert!(
-                error.abs() <= bound,
-                "{engine}: behind the square of {side} m at {place:?} {error:+.3} of the light"
-            );
-        }
+        assert_shadows(&scene(1), engine);
     }
+}
+
+/// None of the lights has the power for which a shot tests the mesh.
+#[test]
+fn many_small_lights_refine_like_a_large_one() {
+    assert_shadows(&scene(20), ENGINE);
 }
