@@ -8,7 +8,7 @@ use super::options::Options;
 use super::shoot::{Shooter, evaluate};
 use super::source::{cells_of, source_from};
 use super::tiling::Tiling;
-use crate::form_factor::{Receiver, Sampler};
+use crate::form_factor::{Formula, Receiver, Sampler};
 use crate::geometry::{cosine_direction, jitter};
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
@@ -138,7 +138,7 @@ impl<'a> OpenLight<'a> {
         let sampler = Sampler {
             visibility,
             extent: self.mesh.frame.extent(),
-            formula: self.options.formula(),
+            formula: Formula::Polygon,
             thresholds: self.options.source_thresholds(self.reference).scaled(finer),
         };
         if let Some(all) = &self.clusters {
