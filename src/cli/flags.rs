@@ -47,7 +47,7 @@ pub(super) struct SolveFlags {
     /// Deepest level of a quadtree
     #[arg(long, value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=17), help_heading = MESHING)]
     max_depth: Option<u32>,
-    /// Meshing ends when a shot carries less than this fraction of the emitted power
+    /// Meshing ends when a shot carries less than this fraction of the emitted power; weaker emitters take turns
     #[arg(long, value_name = "FRACTION", value_parser = not_negative, help_heading = MESHING)]
     meshing_power: Option<f64>,
     /// ε_fd: split a cell of the source while it differs from its four parts by more
@@ -66,7 +66,7 @@ pub(super) struct SolveFlags {
     /// Formula: hybrid, disk (Eq. 1) or polygon (Eq. 2)
     #[arg(long, value_parser = named::<FormFactorRule>, help_heading = FORM_FACTORS)]
     form_factor: Option<FormFactorRule>,
-    /// The factor of the five-times rule
+    /// The factor of the five-times rule; clusters have a rule of their own
     #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = FORM_FACTORS)]
     distance_factor: Option<f64>,
     /// What a patch shoots: interpolated, or its mean as in the paper; clusters shoot what is interpolated

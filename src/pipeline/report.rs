@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::solution::{EngineReport, PowerReport, Report, Seconds};
-use crate::solver::{Ledger, Light, Options, Outcome, Shooting, StopReason};
+use crate::solver::{FormFactorRule, Ledger, Light, Options, Outcome, Shooting, StopReason};
 use crate::visibility::Visibility;
 
 /// The report before anything was shot.
@@ -106,6 +106,10 @@ fn warn_of_options(report: &mut Report, mesh: &Mesh) {
     let idle = [
         (options.raw_form_factors, "raw_form_factors"),
         (options.shooting == Shooting::Mean, "shooting = mean"),
+        (
+            options.form_factor == FormFactorRule::Polygon,
+            "form_factor = polygon",
+        ),
     ];
     let idle: Vec<&str> = idle.iter().filter(|o| o.0).map(|o| o.1).collect();
     if options.clusters(mesh) && !idle.is_empty() {

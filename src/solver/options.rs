@@ -62,7 +62,8 @@ pub struct Options {
     pub quantity: Quantity,
     /// Where refinement starts and ends.
     pub limits: MeshLimits,
-    /// Meshing ends when a shot carries less than this fraction of the emitted power.
+    /// Meshing ends when a shot carries less than this fraction of the emitted power; of emitters that each have less, as many test the
+    /// mesh as there are such fractions in what they emit.
     pub meshing_power: f64,
     /// A cell of the source is split while its estimate differs from its sub-cells' by more (ε_fd); relative, or a form
     /// factor with `raw_form_factors`.
@@ -73,9 +74,9 @@ pub struct Options {
     pub epsilon_area: f64,
     /// ε_fd and ε_fe are form factors, as in the paper; clusters pass it over.
     pub raw_form_factors: bool,
-    /// The formula for form factors.
+    /// The formula for form factors; clusters take Eq. (2) where they come down to a single tile, unless it is Eq. (1).
     pub form_factor: FormFactorRule,
-    /// The factor of the five-times rule.
+    /// The factor of the five-times rule; clusters follow ε_fd in its place.
     pub distance_factor: f64,
     /// What a patch shoots; clusters pass it over.
     pub shooting: Shooting,

@@ -273,12 +273,13 @@ fn options_that_clusters_pass_over_are_warned_of_once() {
         run.err
     };
     let begin = "no effect on patches that shoot as clusters";
-    let options = ["--raw-form-factors", "--shooting", "mean"];
+    let formula = ["--form-factor", "polygon"];
+    let options = [&["--raw-form-factors", "--shooting", "mean"][..], &formula].concat();
     assert!(!solve(&options).contains(begin), "one patch is no cluster");
     assert!(!solve(&["--cluster-from", "0"]).contains(begin));
     let said = solve(&[&options[..], &["--cluster-from", "0"]].concat());
     let warning = format!(
-        "{begin}, as all do with more than 0 (cluster_from): raw_form_factors, shooting = mean"
+        "{begin}, as all do with more than 0 (cluster_from): raw_form_factors, shooting = mean, form_factor = polygon"
     );
     assert!(said.contains(&warning), "{said}");
     let page = fs::read_to_string(output.join("report.html")).expect("was written");
