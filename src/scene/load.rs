@@ -176,12 +176,9 @@ fn assemble(
     let what = "of closed solids that are inside out made two-sided";
     inside_out.report(&mut warnings, path, "polygon", what);
 
-    let (metres_per_unit, cameras) = match settings {
-        Some((file, settings)) => (
-            settings.metres_per_unit(file)?,
-            cameras::from_settings(file, settings, up)?,
-        ),
-        None => (1.0, Vec::new()),
+    let cameras = match settings {
+        Some((file, settings)) => cameras::from_settings(file, settings, up)?,
+        None => Vec::new(),
     };
     let name = settings.and_then(|(_, s)| s.name.clone());
     let names = Names {
@@ -192,7 +189,7 @@ fn assemble(
     };
     let mut scene = Scene {
         name: name.unwrap_or_else(|| stem(path)),
-        metres_per_unit,
+        metres_per_unit: reading.metres_per_unit,
         input_polygons: geometry.polygons.len(),
         vertices: geometry.polygons.positions,
         surfaces,

@@ -12,7 +12,7 @@
 //! geometry = "cornell-box.obj"  # in the folder of this file, or below
 //! unit = "mm"                   # m (default), cm, mm, in or ft; or metres_per_unit = 0.001
 //! up = "y"                      # the axis of the file that points up: y (default) or z
-//! point_light_radius = 0.05     # for glTF's lights without a surface: see below
+//! point_light_radius = 0.05     # in that unit, for glTF's lights without a surface: see below
 //! sides = "auto"                # front, both, or auto (default): see below
 //!
 //! [material.white]              # overrides what the MTL file says

@@ -1,7 +1,8 @@
 //! glTF that is refused, and how that is said.
 
 use super::Files;
-use super::gltf::{files, square, with_light};
+use super::gltf::{files, square};
+use super::gltf_lights::with_light;
 use super::mutations::{assert_sound, damage};
 use serde_json::{Value, json};
 

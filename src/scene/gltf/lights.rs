@@ -12,6 +12,7 @@ use std::f64::consts::PI;
 pub(super) struct Lights {
     list: Vec<Lamp>,
     radius: f64,
+    metres_per_unit: f64,
     left_out: usize,
 }
 
@@ -31,6 +32,7 @@ impl Lights {
         let mut lights = Self {
             list: Vec::new(),
             radius: how.point_light_radius.unwrap_or_default(),
+            metres_per_unit: how.metres_per_unit,
             left_out: 0,
         };
         let found = placed.iter().filter(|node| node.node.light().is_some());
@@ -64,7 +66,7 @@ impl Lights {
             // A sphere gives 4π times its intensity, π times its radiance and area; a square along its axis its radiance times its area.
             let share = if lamp.axis.is_none() { 4.0 } else { 1.0 };
             building.noticed.spots += usize::from(lamp.axis.is_some());
-            let radiance = share * lamp.intensity / area;
+            let radiance = share * lamp.intensity / (area * self.metres_per_unit.powi(2));
             let material = building.palette.light(lamp.name.clone(), radiance);
             for polygon in polygons {
                 let corners: Vec<u32> = polygon.iter().map(|p| building.welder.index(*p)).collect();
