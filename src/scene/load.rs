@@ -155,7 +155,8 @@ fn assemble(
     let polygons = &geometry.polygons;
 
     // Split what is not a triangle or a convex planar quad, and decide which sides radiate.
-    let repeated = duplicates::find(polygons);
+    let shines = |polygon: usize| materials.emit(polygons, polygon);
+    let repeated = duplicates::find(polygons, shines);
     let mut surfaces = split::split(path, polygons, &repeated, &mut warnings);
     if surfaces.is_empty() {
         return Err(nothing_usable(path, polygons.len()));
@@ -168,7 +169,6 @@ fn assemble(
         }
     };
     let rules: Vec<SidesRule> = materials.sides.iter().map(stated).collect();
-    let shines = |polygon: usize| materials.list[polygons.materials[polygon] as usize].emits();
     let mut inside_out = Tally::default();
     sides::decide(polygons, &repeated, &rules, shines, &mut surfaces)
         .into_iter()

@@ -1,6 +1,7 @@
 //! From what the files say about materials to the scene's own: overrides applied, values judged.
 
 use super::mtl::{Entry, Library, Stated};
+use super::polygons::Polygons;
 use super::settings::{Channels, MaterialSettings, Settings, SidesRule};
 use super::text::{TextFile, quote};
 use super::{Material, SceneError, limits};
@@ -27,6 +28,13 @@ pub(super) struct Materials {
     pub shining: Vec<u32>,
     /// Names of those that were to reflect everything.
     perfect: Vec<String>,
+}
+
+impl Materials {
+    /// Whether a polygon gives light of its own.
+    pub fn emit(&self, polygons: &Polygons, polygon: usize) -> bool {
+        self.list[polygons.materials[polygon] as usize].emits()
+    }
 }
 
 /// Judges every material of the library, as overridden by the settings (and the file they stand in).

@@ -60,7 +60,7 @@
 //! Triangles and convex planar quads stay as they are. A quad whose corners miss their plane by more than 1e-5
 //! of its size, or that is concave, becomes two triangles; a polygon with more corners becomes a constrained
 //! Delaunay triangulation in which well-shaped neighbours are joined to quads. Left out with a warning are
-//! repetitions, polygons without area and polygons whose boundary crosses itself.
+//! repetitions (of polygons with the same corners the first that emits stays, or else the first), polygons without area and polygons whose boundary crosses itself.
 
 mod backs;
 mod cameras;
