@@ -115,7 +115,7 @@ fn a_scene_file_has_the_last_word() {
 }
 
 /// The document with a texture: `media` of those bytes.
-fn textured(media: &str, bytes: &[u8]) -> Value {
+pub fn textured(media: &str, bytes: &[u8]) -> Value {
     let mut document = square();
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
     document["textures"] = json!([{ "source": 0 }]);
@@ -124,7 +124,7 @@ fn textured(media: &str, bytes: &[u8]) -> Value {
     document
 }
 
-fn png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
+pub fn png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
     let mut bytes = Vec::new();
     encode_png(&mut bytes, width, height, pixels).expect("memory can be written to");
     bytes
