@@ -300,6 +300,10 @@ fn units_have_lengths() {
         2.5
     );
     assert_eq!(with_settings("metres_per_unit = 3").0.metres_per_unit, 3.0);
+    for extreme in ["1e-12", "1e12"] {
+        let summary = with_settings(&format!("metres_per_unit = {extreme}")).0;
+        assert!(summary.summary().area.is_normal());
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::file::File;
 use super::nodes::Placed;
 use super::{Building, Reading, watts};
-use crate::scene::SceneError;
+use crate::scene::{SceneError, limits};
 use ::gltf::khr_lights_punctual::Kind;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -48,7 +48,7 @@ impl Lights {
             return Ok(lights);
         }
         for node in found {
-            lights.list.extend(Lamp::of(file, node)?);
+            lights.list.extend(Lamp::of(file, node, lights.radius)?);
         }
         Ok(lights)
     }
@@ -77,7 +77,7 @@ impl Lights {
 }
 
 impl Lamp {
-    fn of(file: &File, placed: &Placed) -> Result<Option<Self>, SceneError> {
+    fn of(file: &File, placed: &Placed, radius: f64) -> Result<Option<Self>, SceneError> {
         let Some(light) = placed.node.light() else {
             return Ok(None);
         };
@@ -92,11 +92,17 @@ impl Lamp {
                 return Err(file.error(found, "a large emitting surface instead"));
             }
         };
+        let place = placed.to_scene.transform_point3(DVec3::ZERO);
+        if place.is_nan() || place.abs().max_element() + radius > limits::COORDINATE {
+            let found = format!("a light at {place} (KHR_lights_punctual)");
+            let expected = format!("finite coordinates, at most {:e}", limits::COORDINATE);
+            return Err(file.error(found, &expected));
+        }
         let colour = DVec3::from(light.color().map(f64::from));
         let name = placed.node.name().or(light.name()).unwrap_or("light");
         Ok(Some(Self {
             name: name.to_owned(),
-            place: placed.to_scene.transform_point3(DVec3::ZERO),
+            place,
             axis,
             intensity: watts(colour * f64::from(light.intensity())),
         }))
