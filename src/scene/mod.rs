@@ -66,6 +66,7 @@ mod backs;
 mod cameras;
 mod compare;
 mod duplicates;
+mod ears;
 mod error;
 mod geometry;
 mod gltf;
