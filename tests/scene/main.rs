@@ -5,6 +5,7 @@ mod formats;
 mod gltf;
 mod gltf_emission;
 mod gltf_lights;
+mod gltf_materials;
 mod gltf_refused;
 mod gltf_sides;
 mod mutations;

@@ -107,7 +107,10 @@ impl<'a> Palette<'a> {
         self.transparent += usize::from(new && transparent);
         let base = colour(key.1);
         let emission = DVec3::from(key.2.map(|bits| f64::from(f32::from_bits(bits))));
-        let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
+        let [r, g, b, _] = match material.pbr_specular_glossiness() {
+            Some(specular) => specular.diffuse_factor(),
+            None => material.pbr_metallic_roughness().base_color_factor(),
+        };
         let strength = f64::from(material.emissive_strength().unwrap_or(1.0));
         let emissive = DVec3::from(material.emissive_factor().map(f64::from)) * strength;
         let reflectance = self.stated(DVec3::from([r, g, b].map(f64::from)) * base);
@@ -172,9 +175,13 @@ fn entry(name: String, reflectance: Option<Stated>, emitted_radiance: Option<Sta
     }
 }
 
-/// The textures of base colour and emission.
+/// The textures of base colour and emission. A material that has both ways to say what is reflected means the specular one, and the other
+/// is for programs that do not know it.
 fn textures<'a>(material: &Material<'a>) -> [Option<Info<'a>>; 2] {
-    let base = material.pbr_metallic_roughness().base_color_texture();
+    let base = match material.pbr_specular_glossiness() {
+        Some(specular) => specular.diffuse_texture(),
+        None => material.pbr_metallic_roughness().base_color_texture(),
+    };
     [base, material.emissive_texture()]
 }
 
