@@ -20,6 +20,8 @@ pub(super) struct Library {
     pub entries: Vec<Entry>,
     /// The material of polygons that name none, if there are any such.
     pub default: Option<usize>,
+    /// Names of materials that the file defines and nothing has, where these are not among the entries.
+    pub unused: Vec<String>,
     tobj: Vec<tobj::Material>,
 }
 
@@ -56,6 +58,7 @@ impl Library {
         Self {
             entries,
             default,
+            unused: Vec::new(),
             tobj: Vec::new(),
         }
     }
@@ -111,6 +114,7 @@ pub(super) fn read(
     Ok(Library {
         entries,
         default,
+        unused: Vec::new(),
         tobj,
     })
 }

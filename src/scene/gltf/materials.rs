@@ -115,18 +115,13 @@ impl<'a> Palette<'a> {
         let emissive = DVec3::from(material.emissive_factor().map(f64::from)) * strength;
         let reflectance = self.stated(DVec3::from([r, g, b].map(f64::from)) * base);
         let radiance = self.stated(watts(emissive * emission));
-        let name = material.name().map(str::to_owned);
         self.entries.push(Entry {
             sides: Some(match material.double_sided() {
                 true => SidesRule::Both,
                 false => SidesRule::Front,
             }),
             defined: true,
-            ..entry(
-                name.unwrap_or_else(|| format!("material {}", index + 1)),
-                Some(reflectance),
-                Some(radiance),
-            )
+            ..entry(name(material, index), Some(reflectance), Some(radiance))
         });
         number
     }
@@ -160,7 +155,14 @@ impl<'a> Palette<'a> {
     }
 
     pub fn finish(self) -> Library {
-        Library::new(self.entries, self.default)
+        let all = self.file.document.materials();
+        let names = all.filter_map(|material| Some(name(&material, material.index()?)));
+        let unused = names
+            .filter(|name| !self.entries.iter().any(|entry| entry.name == *name))
+            .collect();
+        let mut library = Library::new(self.entries, self.default);
+        library.unused = unused;
+        library
     }
 }
 
@@ -173,6 +175,11 @@ fn entry(name: String, reflectance: Option<Stated>, emitted_radiance: Option<Sta
         defined: false,
         sides: None,
     }
+}
+
+fn name(material: &Material, index: usize) -> String {
+    let number = || format!("material {}", index + 1);
+    material.name().map_or_else(number, str::to_owned)
 }
 
 /// The textures of base colour and emission. A material that has both ways to say what is reflected means the specular one, and the other
