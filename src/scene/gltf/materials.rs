@@ -192,7 +192,8 @@ fn textures<'a>(material: &Material<'a>) -> [Option<Info<'a>>; 2] {
     [base, material.emissive_texture()]
 }
 
-/// `KHR_texture_transform`: scaled, then turned, then moved.
+/// `KHR_texture_transform`: scaled, then turned, then moved. Counter-clockwise is seen in the texture, where v points down: from +u to -v.
+/// The matrix that the extension prints turns the other way, which is an error that no viewer follows (KhronosGroup/glTF, issue 1563).
 fn transformed(at: DVec2, transform: &::gltf::texture::TextureTransform) -> DVec2 {
     let [offset, scale] = [transform.offset(), transform.scale()];
     let [offset, scale] = [offset, scale].map(|v| DVec2::from(v.map(f64::from)));
