@@ -1,6 +1,6 @@
 //! The mean of what lies under a polygon, texel by texel: an emissive texture may be dark but for a few texels, and these may be very bright.
 //!
-//! Lines along the rows of the texture, two for each row, are added up exactly from one side of the triangle to the other. Lines lie where the
+//! Lines along the rows of the texture, two or more for each row, are added up exactly from one side of the triangle to the other. Lines lie where the
 //! rows do and not where the triangle does, so triangles that share a side share out the texels there and none is counted twice.
 
 use super::texture::Texture;
@@ -26,7 +26,7 @@ impl Texture {
         corners.sort_by(|a, b| a.y.total_cmp(&b.y));
         let [a, b, c] = corners;
         let reach = (b - a).length() + (c - a).length();
-        let near = |corner: &DVec2| corner.abs().max_element() < FARTHEST;
+        let near = |at: &DVec2| at.is_finite() && at.abs().max_element() < FARTHEST;
         if !corners.iter().all(near) || (b - a).perp_dot(c - a).abs() <= 1e-9 * reach * reach {
             return None;
         }
