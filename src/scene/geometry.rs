@@ -36,10 +36,21 @@ impl Geometry {
 }
 
 /// What the settings say about how a geometry file is to be read.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Reading {
     /// Radius in scene units of the emitters that stand for lights without extent; 0 leaves these lights out.
     pub point_light_radius: Option<f64>,
+    /// Length of a scene unit: what a small surface radiates follows from its area in m².
+    pub metres_per_unit: f64,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self {
+            point_light_radius: None,
+            metres_per_unit: 1.0,
+        }
+    }
 }
 
 /// The format of a geometry file.

@@ -155,7 +155,8 @@ fn assemble(
     let polygons = &geometry.polygons;
 
     // Split what is not a triangle or a convex planar quad, and decide which sides radiate.
-    let repeated = duplicates::find(polygons);
+    let shines = |polygon: usize| materials.emit(polygons, polygon);
+    let repeated = duplicates::find(polygons, shines);
     let mut surfaces = split::split(path, polygons, &repeated, &mut warnings);
     if surfaces.is_empty() {
         return Err(nothing_usable(path, polygons.len()));
@@ -168,7 +169,6 @@ fn assemble(
         }
     };
     let rules: Vec<SidesRule> = materials.sides.iter().map(stated).collect();
-    let shines = |polygon: usize| materials.list[polygons.materials[polygon] as usize].emits();
     let mut inside_out = Tally::default();
     sides::decide(polygons, &repeated, &rules, shines, &mut surfaces)
         .into_iter()
@@ -176,12 +176,9 @@ fn assemble(
     let what = "of closed solids that are inside out made two-sided";
     inside_out.report(&mut warnings, path, "polygon", what);
 
-    let (metres_per_unit, cameras) = match settings {
-        Some((file, settings)) => (
-            settings.metres_per_unit(file)?,
-            cameras::from_settings(file, settings, up)?,
-        ),
-        None => (1.0, Vec::new()),
+    let cameras = match settings {
+        Some((file, settings)) => cameras::from_settings(file, settings, up)?,
+        None => Vec::new(),
     };
     let name = settings.and_then(|(_, s)| s.name.clone());
     let names = Names {
@@ -192,7 +189,7 @@ fn assemble(
     };
     let mut scene = Scene {
         name: name.unwrap_or_else(|| stem(path)),
-        metres_per_unit,
+        metres_per_unit: reading.metres_per_unit,
         input_polygons: geometry.polygons.len(),
         vertices: geometry.polygons.positions,
         surfaces,

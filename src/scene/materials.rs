@@ -1,6 +1,7 @@
 //! From what the files say about materials to the scene's own: overrides applied, values judged.
 
 use super::mtl::{Entry, Library, Stated};
+use super::polygons::Polygons;
 use super::settings::{Channels, MaterialSettings, Settings, SidesRule};
 use super::text::{TextFile, quote};
 use super::{Material, SceneError, limits};
@@ -27,6 +28,13 @@ pub(super) struct Materials {
     pub shining: Vec<u32>,
     /// Names of those that were to reflect everything.
     perfect: Vec<String>,
+}
+
+impl Materials {
+    /// Whether a polygon gives light of its own.
+    pub fn emit(&self, polygons: &Polygons, polygon: usize) -> bool {
+        self.list[polygons.materials[polygon] as usize].emits()
+    }
 }
 
 /// Judges every material of the library, as overridden by the settings (and the file they stand in).
@@ -192,15 +200,17 @@ fn refuse_unknown_names(
     settings: &Settings,
     library: &Library,
 ) -> Result<(), SceneError> {
-    let names: FxHashSet<&String> = library.entries.iter().map(|entry| &entry.name).collect();
-    let known = |name: &String| names.contains(name);
-    match settings.material.iter().find(|(name, _)| !known(name)) {
+    let used = library.entries.iter().map(|entry| &entry.name);
+    let all = || used.clone().chain(&library.unused);
+    let names: FxHashSet<&String> = all().collect();
+    match (settings.material.iter()).find(|(name, _)| !names.contains(name)) {
         None => Ok(()),
         Some((name, table)) => {
-            let names: Vec<String> = library
-                .entries
-                .iter()
-                .map(|entry| quote(&entry.name))
+            // Materials that differ in the colour of a texture share a name.
+            let mut listed = FxHashSet::default();
+            let names: Vec<String> = all()
+                .filter(|name| listed.insert(*name))
+                .map(|name| quote(name))
                 .collect();
             let expected = match names.is_empty() {
                 true => "no materials, as the geometry has none".to_owned(),

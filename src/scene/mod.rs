@@ -12,7 +12,7 @@
 //! geometry = "cornell-box.obj"  # in the folder of this file, or below
 //! unit = "mm"                   # m (default), cm, mm, in or ft; or metres_per_unit = 0.001
 //! up = "y"                      # the axis of the file that points up: y (default) or z
-//! point_light_radius = 0.05     # for glTF's lights without a surface: see below
+//! point_light_radius = 0.05     # in that unit, for glTF's lights without a surface: see below
 //! sides = "auto"                # front, both, or auto (default): see below
 //!
 //! [material.white]              # overrides what the MTL file says
@@ -38,13 +38,14 @@
 //! # glTF and PLY
 //!
 //! By the standard glTF is in metres with y up; emission is luminance in cd/m², which becomes radiance at 179 lm/W
-//! ([`WHITE_EFFICACY`](crate::radiometry::WHITE_EFFICACY)). The base colour is the reflectance; under a texture, its mean over each
+//! ([`WHITE_EFFICACY`](crate::radiometry::WHITE_EFFICACY)). The base colour (the diffuse one of
+//! `KHR_materials_pbrSpecularGlossiness`) is the reflectance; under a texture, its mean over each
 //! polygon; colours of vertices are left out, with a warning. `doubleSided` materials radiate from both sides, others from the front; double-sided emitters (of the file or of the
 //! `scene.toml`) that are not the skin of a solid shine from both sides unless `sides = "front"`: each becomes two surfaces back
 //! to back. Perspective cameras are taken over unless the scene file has some. Lights without a surface (`KHR_lights_punctual`) are refused, unless `point_light_radius` (in scene units) asks for spheres of the same
 //! flux in the place of points, and squares of the same intensity along the axis in that of spots; 0 leaves them out.
 //! Consecutive triangles that make a flat, convex quad are one polygon, as exporters cut quads in two. Metals are taken as
-//! diffuse, transparent materials as opaque.
+//! diffuse (those of that extension have no diffuse colour, and are black), transparent materials as opaque.
 //!
 //! PLY has no unit, no up axis and no materials: metres and y unless the scene file says otherwise, and the material `default`.
 //!
@@ -60,12 +61,13 @@
 //! Triangles and convex planar quads stay as they are. A quad whose corners miss their plane by more than 1e-5
 //! of its size, or that is concave, becomes two triangles; a polygon with more corners becomes a constrained
 //! Delaunay triangulation in which well-shaped neighbours are joined to quads. Left out with a warning are
-//! repetitions, polygons without area and polygons whose boundary crosses itself.
+//! repetitions (of polygons with the same corners the first that emits stays, or else the first), polygons without area and polygons whose boundary crosses itself.
 
 mod backs;
 mod cameras;
 mod compare;
 mod duplicates;
+mod ears;
 mod error;
 mod geometry;
 mod gltf;

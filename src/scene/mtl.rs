@@ -4,7 +4,7 @@
 //! their plainest form.
 
 use super::SceneError;
-use super::obj_guard::{CheckedObj, UsedMaterial, rest_of};
+use super::obj_guard::{CheckedObj, UsedMaterial, name_of, without_comment};
 use super::settings::SidesRule;
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
@@ -20,6 +20,8 @@ pub(super) struct Library {
     pub entries: Vec<Entry>,
     /// The material of polygons that name none, if there are any such.
     pub default: Option<usize>,
+    /// Names of materials that the file defines and nothing has, where these are not among the entries.
+    pub unused: Vec<String>,
     tobj: Vec<tobj::Material>,
 }
 
@@ -56,6 +58,7 @@ impl Library {
         Self {
             entries,
             default,
+            unused: Vec::new(),
             tobj: Vec::new(),
         }
     }
@@ -111,6 +114,7 @@ pub(super) fn read(
     Ok(Library {
         entries,
         default,
+        unused: Vec::new(),
         tobj,
     })
 }
@@ -121,6 +125,13 @@ fn library_paths(file: &TextFile, line: usize, named: &str) -> Result<Vec<PathBu
     let find = |name: &str| {
         let here = [folder.join(name), folder.join(name.replace('\\', "/"))];
         here.into_iter().find(|path| path.is_file())
+    };
+    if let Some(path) = find(named) {
+        return Ok(vec![path]);
+    }
+    let named = match without_comment(named, |word| word.starts_with('#')) {
+        "" => named,
+        name => name,
     };
     if let Some(path) = find(named) {
         return Ok(vec![path]);
@@ -183,8 +194,8 @@ impl Scan {
 
     fn file(&mut self, file: &TextFile, warnings: &mut Vec<String>) -> Result<(), SceneError> {
         let mut current = Current::None;
-        let (mut repeated, mut textures, mut transparent) =
-            (Tally::default(), Tally::default(), Tally::default());
+        let (mut repeated, mut textures) = (Tally::default(), Tally::default());
+        let (mut transparent, mut opacity) = (Tally::default(), Opacity::default());
         for (line, text) in file.lines() {
             let mut words = text
                 .split_ascii_whitespace()
@@ -193,7 +204,7 @@ impl Scan {
                 continue;
             };
             match keyword {
-                "newmtl" => match rest_of(&text, keyword) {
+                "newmtl" => match name_of(&text, keyword) {
                     "" => {
                         return Err(file.error(
                             line,
@@ -201,11 +212,16 @@ impl Scan {
                             "the name of a material",
                         ));
                     }
-                    name if self.index_of(name).is_some() => {
-                        repeated.add(line);
-                        current = Current::Skipped;
+                    name => {
+                        std::mem::take(&mut opacity).count(&mut transparent);
+                        current = match self.index_of(name) {
+                            Some(_) => {
+                                repeated.add(line);
+                                Current::Skipped
+                            }
+                            None => Current::Entry(self.define(name, true)),
+                        };
                     }
-                    name => current = Current::Entry(self.define(name, true)),
                 },
                 "Kd" | "Ke" => {
                     let channels = channels(words).map_err(|found| {
@@ -223,14 +239,12 @@ impl Scan {
                     self.state(current, keyword, stated)
                         .map_err(|found| file.error(line, found, "`newmtl NAME` first"))?;
                 }
-                "d" => match words.next().map(str::parse::<f64>) {
-                    Some(Ok(opacity)) if opacity < 1.0 => transparent.add(line),
-                    _ => {}
-                },
+                "d" | "Tr" => opacity.state(keyword, words, line),
                 _ if keyword.starts_with("map_K") || keyword == "map_d" => textures.add(line),
                 _ => {}
             }
         }
+        opacity.count(&mut transparent);
         repeated.report(
             warnings,
             &file.path,
@@ -298,6 +312,34 @@ enum Current {
     None,
     Skipped,
     Entry(usize),
+}
+
+/// What lets light through of a material, with the line: `d`, or else `Tr`, which is 1 less `d` and which some programs write beside it as the same.
+#[derive(Default)]
+struct Opacity {
+    dissolve: Option<(f64, usize)>,
+    transparency: Option<(f64, usize)>,
+}
+
+impl Opacity {
+    fn state<'a>(&mut self, keyword: &str, words: impl Iterator<Item = &'a str>, line: usize) {
+        let mut numbers = words.filter(|word| *word != "-halo").map(str::parse);
+        let Some(Ok(number)) = numbers.next() else {
+            return;
+        };
+        match keyword {
+            "d" => self.dissolve = Some((number, line)),
+            _ => self.transparency = Some((number, line)),
+        }
+    }
+
+    fn count(self, transparent: &mut Tally) {
+        let by_dissolve = self.dissolve.map(|(d, line)| (d < 1.0, line));
+        let by_transparency = self.transparency.map(|(t, line)| (t > 0.0, line));
+        if let Some((true, line)) = by_dissolve.or(by_transparency) {
+            transparent.add(line);
+        }
+    }
 }
 
 /// Three numbers, or one that stands for three.

@@ -62,10 +62,10 @@ pub(super) fn check(file: &TextFile) -> Result<CheckedObj, SceneError> {
         let checked = match keyword {
             "v" => obj.vertex(words),
             "f" => obj.face(words, number),
-            "usemtl" => obj.material(rest_of(&line, keyword)),
+            "usemtl" => obj.material(name_of(&line, keyword)),
             "mtllib" => obj.library(rest_of(&line, keyword), number),
             "o" | "g" => {
-                obj.group(rest_of(&line, keyword));
+                obj.group(name_of(&line, keyword));
                 Ok(())
             }
             "vn" | "vt" | "vp" | "s" | "l" | "p" | "mg" | "lod" | "bevel" | "c_interp"
@@ -253,9 +253,22 @@ impl CheckedObj {
 }
 
 /// What follows the keyword, spaces inside it included: names may hold any.
-pub(super) fn rest_of<'a>(line: &'a str, keyword: &str) -> &'a str {
+fn rest_of<'a>(line: &'a str, keyword: &str) -> &'a str {
     let line = line.trim_start();
     line.strip_prefix(keyword).unwrap_or(line).trim()
+}
+
+/// The name that follows the keyword, without a comment: programs number materials as in `Material #2`, so a `#` is part of the name
+/// where no space follows it.
+pub(super) fn name_of<'a>(line: &'a str, keyword: &str) -> &'a str {
+    without_comment(rest_of(line, keyword), |word| word == "#")
+}
+
+/// What comes before the first word with which a comment begins.
+pub(super) fn without_comment(text: &str, begins: impl Fn(&str) -> bool) -> &str {
+    let place = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
+    let comment = text.split_ascii_whitespace().find(|word| begins(word));
+    text[..comment.map_or(text.len(), place)].trim_end()
 }
 
 fn index_range(vertices: i64) -> String {

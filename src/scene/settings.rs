@@ -1,8 +1,8 @@
 //! The keys of a `scene.toml`, with the lines where they stand.
 
-use super::SceneError;
 use super::geometry::Reading;
 use super::text::{TextFile, quote};
+use super::{SceneError, limits};
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
@@ -133,13 +133,17 @@ impl Settings {
     /// How the geometry file is to be read.
     pub fn reading(&self, file: &TextFile) -> Result<Reading, SceneError> {
         let radius = self.point_light_radius.as_ref();
-        if let Some(wrong) = radius.filter(|radius| !(0.0..1e30).contains(radius.get_ref())) {
+        if let Some(wrong) =
+            radius.filter(|radius| !(0.0..=limits::COORDINATE).contains(radius.get_ref()))
+        {
             let found = format!("point_light_radius = {}", wrong.get_ref());
             let line = file.line_at(wrong.span().start);
-            return Err(file.error(line, found, "a radius, or 0 to leave such lights out"));
+            let expected = "a radius up to 1e18, or 0 to leave such lights out";
+            return Err(file.error(line, found, expected));
         }
         Ok(Reading {
             point_light_radius: radius.map(|radius| *radius.get_ref()),
+            metres_per_unit: self.metres_per_unit(file)?,
         })
     }
 
@@ -158,14 +162,13 @@ impl Settings {
                 file.error(file.line_at(unit.span().start), found, expected)
             }),
             (None, Some(length)) => match *length.get_ref() {
-                metres if metres.is_normal() && metres > 0.0 => Ok(metres),
+                metres if limits::UNIT.contains(&metres) => Ok(metres),
                 other => {
                     let line = file.line_at(length.span().start);
-                    Err(file.error(
-                        line,
-                        format!("metres_per_unit = {other}"),
-                        "a positive, finite number",
-                    ))
+                    let (least, most) = (limits::UNIT.start(), limits::UNIT.end());
+                    let expected = format!("{least:e} to {most:e} metres");
+                    let found = format!("metres_per_unit = {other:?}");
+                    Err(file.error(line, found, expected))
                 }
             },
         }

@@ -55,7 +55,7 @@ pub(super) fn shine_from_both(geometry: &mut Geometry, materials: &mut Materials
         return;
     }
     let polygons = &mut geometry.polygons;
-    let repeated = duplicates::find(polygons);
+    let repeated = duplicates::find(polygons, |polygon| materials.emit(polygons, polygon));
     let bodies = Bodies::new(polygons, &repeated);
     for (polygon, repeated) in repeated.iter().enumerate() {
         let material = polygons.materials[polygon];

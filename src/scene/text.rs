@@ -43,8 +43,8 @@ impl TextFile {
 
     /// The file's lines, each with its number.
     ///
-    /// Lines end with LF, CRLF or CR. A line that ends with a backslash continues on the next one and
-    /// keeps the number of its first part.
+    /// Lines end with LF, CRLF or CR. A line that ends with a backslash, spaces after it or not, continues on the next one and
+    /// keeps the number of its first part; a comment ends with its line.
     pub fn lines(&self) -> Lines<'_> {
         Lines {
             rest: &self.text,
@@ -113,13 +113,13 @@ impl<'a> Iterator for Lines<'a> {
     fn next(&mut self) -> Option<Self::Item> {
         let first = self.physical_line()?;
         let number = self.number;
-        let Some(begun) = first.strip_suffix('\\') else {
+        let Some(begun) = continued(first) else {
             return Some((number, Cow::Borrowed(first)));
         };
         let mut joined = begun.to_owned();
         while let Some(next) = self.physical_line() {
             joined.push(' ');
-            match next.strip_suffix('\\') {
+            match continued(next) {
                 Some(part) => joined.push_str(part),
                 None => {
                     joined.push_str(next);
@@ -129,6 +129,14 @@ impl<'a> Iterator for Lines<'a> {
         }
         Some((number, Cow::Owned(joined)))
     }
+}
+
+/// The line without the backslash by which it continues, if it does: that of a folder at the end of a comment is none.
+fn continued(line: &str) -> Option<&str> {
+    let begun = line.trim_end().strip_suffix('\\')?;
+    let is_comment = |word: &str| word.starts_with('#');
+    let commented = line.split_ascii_whitespace().any(is_comment);
+    (!commented).then_some(begun)
 }
 
 /// Quotes what a file says for a message: on one line, at most 60 characters.
@@ -166,6 +174,26 @@ mod tests {
     fn a_backslash_joins_lines_under_the_first_number() {
         let want = vec![(1, "f 1  2 3".into()), (4, "v".into())];
         assert_eq!(lines(b"f 1 \\\r\n2\\\n3\nv\\"), want);
+    }
+
+    #[test]
+    fn a_comment_ends_with_its_line_whatever_it_ends_with() {
+        let text = b"# from C:\\models\\\nv 1 # in D:\\\nf 1 \\\n2 # or E:\\\nv";
+        let want = vec![
+            (1, "# from C:\\models\\".into()),
+            (2, "v 1 # in D:\\".into()),
+            (3, "f 1  2 # or E:\\".into()),
+            (5, "v".into()),
+        ];
+        assert_eq!(lines(text), want);
+    }
+
+    #[test]
+    fn spaces_after_a_backslash_do_not_matter() {
+        assert_eq!(
+            lines(b"f 1 2 \\ \t\n3\nv"),
+            vec![(1, "f 1 2  3".into()), (3, "v".into())]
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Triangles of a polygon with any number of corners: ears are cut off, then edges flipped until the
 //! triangulation is Delaunay within the polygon, then neighbours joined to quads.
 
+use super::ears;
 use super::polygon::{doubled_area_vector, has_no_area, is_planar, is_strictly_convex};
 use super::split::Piece;
 use glam::{DVec2, DVec3};
@@ -14,7 +15,7 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     if crosses_itself(&points) {
         return None;
     }
-    let mut triangles = cut_ears(&points)?;
+    let mut triangles = ears::cut(&points)?;
     flip_to_delaunay(&points, &mut triangles);
     triangles.retain(|triangle| !has_no_area(&triangle.map(|corner| corners[corner])));
     Some(triangles)
@@ -33,14 +34,14 @@ fn project(corners: &[DVec3]) -> Vec<DVec2> {
 }
 
 /// Twice the signed area of a triangle: positive if it runs counter-clockwise.
-fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+pub(super) fn orient(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
 /// Whether two segments cross, each end farther than a rounding error from the other segment's line.
 ///
 /// Boundaries that touch, as where a hole is tied to the rim by a cut, must not count as crossing.
-fn cross_properly([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+pub(super) fn cross_properly([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     const ROUNDING: f64 = 1e-9;
     let reach = ROUNDING * (b - a).length() * (d - c).length();
     let apart = |p: f64, q: f64| (p > reach && q < -reach) || (p < -reach && q > reach);
@@ -51,45 +52,6 @@ fn crosses_itself(points: &[DVec2]) -> bool {
     let n = points.len();
     let edge = |i: usize| [points[i], points[(i + 1) % n]];
     (0..n).any(|i| (i + 2..n).any(|j| (j + 1) % n != i && cross_properly(edge(i), edge(j))))
-}
-
-fn cut_ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
-    let mut rest: Vec<usize> = (0..points.len()).collect();
-    let mut triangles = Vec::with_capacity(points.len());
-    let mut at = 0;
-    while rest.len() > 3 {
-        let n = rest.len();
-        let ear = (0..n)
-            .map(|step| (at + step) % n)
-            .find(|place| is_ear(points, &rest, *place))?;
-        triangles.push([rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]]);
-        rest.remove(ear);
-        // Go on past the neighbour, so that ears are cut all around and not as one fan.
-        at = ear + 1;
-    }
-    let last = [rest[0], rest[1], rest[2]];
-    let [a, b, c] = last.map(|i| points[i]);
-    triangles.push(last);
-    (orient(a, b, c) > 0.0).then_some(triangles)
-}
-
-/// Whether the corner at a place can be cut off: it points outwards, nothing of the boundary lies in the
-/// triangle, and none of it crosses the cut.
-fn is_ear(points: &[DVec2], rest: &[usize], place: usize) -> bool {
-    let n = rest.len();
-    let at = |place: usize| points[rest[place % n]];
-    let (before, tip, after) = (at(place + n - 1), at(place), at(place + 1));
-    if orient(before, tip, after) <= 0.0 {
-        return false;
-    }
-    (0..n).all(|other| {
-        let point = at(other);
-        let is_corner = point == before || point == tip || point == after;
-        let inside = orient(before, tip, point) >= 0.0
-            && orient(tip, after, point) >= 0.0
-            && orient(after, before, point) >= 0.0;
-        (is_corner || !inside) && !cross_properly([after, before], [point, at(other + 1)])
-    })
 }
 
 /// Flips edges between triangles as long as the two angles that face them add up to more than 180°.

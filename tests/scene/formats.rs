@@ -115,6 +115,50 @@ fn one_line_may_name_several_libraries_and_folders_of_windows() {
 }
 
 #[test]
+fn comments_may_follow_names() {
+    let text = format!(
+        "mtllib my it.mtl # exported\n{SQUARE}g floor # a\nusemtl wood #2 # b\nf 1 2 3 4\n"
+    );
+    let mtl = "newmtl wood #2 # of oak\nKd .1 .2 .3\n";
+    for library in ["my it.mtl # exported", "my it.mtl #exported", "my it.mtl"] {
+        let text = text.replace("my it.mtl # exported", library);
+        let files = [("it.obj", text.as_str()), ("my it.mtl", mtl)];
+        let (scene, warnings) = Files::new(&files).accepted("it.obj");
+        assert_eq!(warnings, [""; 0]);
+        assert_eq!(scene.materials[0].name, "wood #2");
+        assert_eq!(scene.materials[0].reflectance, Vec3::new(0.1, 0.2, 0.3));
+    }
+    // A file that is called so comes first.
+    let text = text.replace("my it.mtl # exported", "it #2.mtl");
+    let files = [
+        ("it.obj", text.as_str()),
+        ("it #2.mtl", mtl),
+        ("it", "newmtl wood #2"),
+    ];
+    assert_eq!(Files::new(&files).accepted("it.obj").1, [""; 0]);
+}
+
+#[test]
+fn every_way_to_be_transparent_is_counted_once_for_a_material() {
+    for (lines, count) in [
+        ("d 0.5", 1),
+        ("d -halo 0.1", 1),
+        ("Tr 0.9", 1),
+        ("d 0.1\nTr 0.9", 1),
+        ("d 1\nTr 1", 0),
+        ("d -halo 1", 0),
+        ("Tr 0", 0),
+        ("d\nTr x", 0),
+    ] {
+        let (_, warnings) = with_material(&format!("newmtl a\nKd .5 .5 .5\n{lines}\n"));
+        assert_eq!(warnings.len(), count, "{lines}: {warnings:?}");
+    }
+    let (_, warnings) = with_material("newmtl a\nKd .5\nTr .1\nnewmtl b\nKd .5\nd .2\n");
+    let expected = "it.mtl:3: 2 transparent materials treated as opaque (first here)";
+    assert_eq!(warnings, [expected]);
+}
+
+#[test]
 fn a_face_may_come_before_its_vertices_and_use_before_the_library() {
     let text = format!("usemtl a\nf 1 2 3 4\n{SQUARE}mtllib it.mtl\n");
     let files = [
@@ -256,6 +300,10 @@ fn units_have_lengths() {
         2.5
     );
     assert_eq!(with_settings("metres_per_unit = 3").0.metres_per_unit, 3.0);
+    for extreme in ["1e-12", "1e12"] {
+        let summary = with_settings(&format!("metres_per_unit = {extreme}")).0;
+        assert!(summary.summary().area.is_normal());
+    }
 }
 
 #[test]

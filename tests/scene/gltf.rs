@@ -3,10 +3,8 @@
 use super::Files;
 use glam::{DVec3, Vec3};
 use radiosity::codec::{base64, encode_png};
-use radiosity::radiometry::WHITE_EFFICACY;
 use radiosity::scene::{Corners, Scene, Sides};
 use serde_json::{Value, json};
-use std::f64::consts::PI;
 
 /// A square of 1 m in the plane z = 0 that faces +z, as two triangles; accessors: positions, texture coordinates, indices.
 pub fn square() -> Value {
@@ -117,7 +115,7 @@ fn a_scene_file_has_the_last_word() {
 }
 
 /// The document with a texture: `media` of those bytes.
-fn textured(media: &str, bytes: &[u8]) -> Value {
+pub fn textured(media: &str, bytes: &[u8]) -> Value {
     let mut document = square();
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
     document["textures"] = json!([{ "source": 0 }]);
@@ -126,7 +124,7 @@ fn textured(media: &str, bytes: &[u8]) -> Value {
     document
 }
 
-fn png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
+pub fn png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
     let mut bytes = Vec::new();
     encode_png(&mut bytes, width, height, pixels).expect("memory can be written to");
     bytes
@@ -260,60 +258,6 @@ fn cameras_look_along_their_negative_z() {
     let expected = 2.0 * (2.0 * 0.5f64.tan()).atan().to_degrees();
     assert!((camera.horizontal_fov - expected).abs() < 1e-5);
     assert_eq!(warnings, ["it.gltf: 1 orthographic cameras left out"]);
-}
-
-/// A square with a light of 895 cd above.
-pub fn with_light(kind: Value) -> Value {
-    let mut document = square();
-    document["extensionsUsed"] = json!(["KHR_lights_punctual"]);
-    let mut light = json!({ "color": [1.0, 0.5, 0.0], "intensity": 895.0 });
-    for (key, value) in kind.as_object().expect("is an object") {
-        light[key] = value.clone();
-    }
-    document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
-    document["nodes"][0]["children"] = json!([1]);
-    let nodes = document["nodes"].as_array_mut().expect("is a list");
-    nodes.push(json!({
-        "name": "bulb", "translation": [0, 0, 2],
-        "extensions": { "KHR_lights_punctual": { "light": 0 } },
-    }));
-    document
-}
-
-fn with_radius(document: &Value, radius: f64) -> (Scene, Vec<String>) {
-    let toml = format!("geometry = 'it.gltf'\npoint_light_radius = {radius}\n");
-    Files::new(&[("it.gltf", document.to_string()), ("scene.toml", toml)]).accepted("")
-}
-
-#[test]
-fn points_of_light_become_spheres_of_the_same_flux_on_request() {
-    let document = with_light(json!({ "type": "point" }));
-    let (scene, _) = with_radius(&document, 0.1);
-    let summary = scene.summary();
-    assert_eq!((summary.emitters, summary.two_sided), (20, 0));
-    // 895 cd are 5 W/sr at 179 lm/W.
-    let watts = 4.0 * PI * 895.0 / WHITE_EFFICACY;
-    let expected = DVec3::new(watts, watts / 2.0, 0.0);
-    assert!(summary.emitted_power.distance(expected) < 1e-4 * watts);
-    for surface in scene.surfaces.iter().skip(1) {
-        let centre = scene.positions(surface).sum::<DVec3>() / 3.0 - DVec3::new(0.0, 0.0, 2.0);
-        assert!(centre.length() < 0.1 && centre.dot(scene.normal(surface)) > 0.0);
-    }
-    let (scene, warnings) = with_radius(&document, 0.0);
-    assert_eq!((scene.summary().emitters, warnings.len()), (0, 1));
-    assert!(warnings[0].contains("1 lights that have no surface left out"));
-}
-
-#[test]
-fn spots_become_squares_as_bright_along_their_axis() {
-    let spot = json!({ "type": "spot", "spot": { "outerConeAngle": 0.5 } });
-    let (scene, warnings) = with_radius(&with_light(spot), 0.1);
-    let lamp = &scene.surfaces[1];
-    assert!(scene.normal(lamp).distance(DVec3::NEG_Z) < 1e-9);
-    let radiance = scene.materials[lamp.material as usize].emitted_radiance;
-    let intensity = f64::from(radiance.x) * scene.area(lamp);
-    assert!((intensity - 5.0).abs() < 1e-4, "{intensity} W/sr");
-    assert!(warnings[0].contains("spot lights"), "{warnings:?}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! glTF that is refused, and how that is said.
 
 use super::Files;
-use super::gltf::{files, square, with_light};
+use super::gltf::{files, square};
+use super::gltf_lights::with_light;
 use super::mutations::{assert_sound, damage};
 use serde_json::{Value, json};
 
@@ -141,6 +142,30 @@ fn lights_without_a_surface_need_a_word() {
     let message = message.refusal("");
     assert!(
         message.contains("scene.toml:2: found point_light_radius = -1"),
+        "{message}"
+    );
+}
+
+#[test]
+fn lights_stand_where_polygons_may() {
+    let refusal = |place: f64, radius: f64| {
+        let mut document = with_light(json!({ "type": "point" }));
+        document["nodes"][1]["translation"] = json!([0, place, 0]);
+        let toml = format!("geometry = 'it.gltf'\npoint_light_radius = {radius:e}\n");
+        let files = [("it.gltf", document.to_string()), ("scene.toml", toml)];
+        Files::new(&files).refusal("")
+    };
+    for (place, radius) in [(2e18, 1.0), (9e17, 9e17)] {
+        let message = refusal(place, radius);
+        assert!(
+            message.starts_with("it.gltf: found a light at [0, "),
+            "{message}"
+        );
+        assert!(message.ends_with("expected finite coordinates, at most 1e18"));
+    }
+    let message = refusal(1.0, 2e18);
+    assert!(
+        message.contains("expected a radius up to 1e18"),
         "{message}"
     );
 }

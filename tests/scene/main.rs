@@ -3,6 +3,9 @@
 mod bundled;
 mod formats;
 mod gltf;
+mod gltf_emission;
+mod gltf_lights;
+mod gltf_materials;
 mod gltf_refused;
 mod gltf_sides;
 mod mutations;

@@ -88,9 +88,24 @@ fn what_is_wrong_is_said() {
         ("end_header\n", "", &["it.ply:13", "`0 0 0 9`"]),
         ("4 0 1 2 3", "4 0 1 2 4", &["vertex 4 of 4 in face 0 of 1"]),
         ("4 0 1 2 3", "4 0 1 2 -3", &["-3", "face 0"]),
-        ("4 0 1 2 3", "2 0 1 2 3", &["2 corners in face 0"]),
+        (
+            "4 0 1 2 3",
+            "2 0 1 2 3",
+            &[
+                "found a polygon with 2 corners in face 0 of 1",
+                "expected 3 to 4096 corners",
+            ],
+        ),
         ("4 0 1 2 3", "4 0 1", &["the end of the file in face 0"]),
-        ("1 1 0 9", "1 nan 0 9", &["the position", "vertex 2 of 4"]),
+        (
+            "1 1 0 9",
+            "1 nan 0 9",
+            &[
+                "the position",
+                "vertex 2 of 4",
+                "expected finite coordinates",
+            ],
+        ),
         ("1 1 0 9", "1 one 0 9", &["`one` in vertex 2"]),
     ] {
         assert!(TEXT.contains(from), "{from}");

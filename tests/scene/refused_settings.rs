@@ -79,14 +79,20 @@ fn keys_of_a_scene_file() {
         "unit = 'furlong'",
         "scene.toml:2: found the unit `furlong`; expected \"m\", \"cm\", \"mm\", \"in\" or \"ft\"; or `metres_per_unit` instead",
     );
-    toml_is_refused(
-        "metres_per_unit = 0",
-        "scene.toml:2: found metres_per_unit = 0; expected a positive, finite number",
-    );
-    toml_is_refused(
-        "metres_per_unit = nan",
-        "scene.toml:2: found metres_per_unit = NaN; expected a positive, finite number",
-    );
+    for (length, said) in [
+        ("0", "0.0"),
+        ("-1", "-1.0"),
+        ("nan", "NaN"),
+        ("1e-13", "1e-13"),
+        ("1e300", "1e300"),
+        ("inf", "inf"),
+    ] {
+        let found = format!("scene.toml:2: found metres_per_unit = {said}");
+        toml_is_refused(
+            &format!("metres_per_unit = {length}"),
+            &format!("{found}; expected 1e-12 to 1e12 metres"),
+        );
+    }
     toml_is_refused(
         "unit = 'm'\nmetres_per_unit = 1",
         "scene.toml:2: found both `unit` and `metres_per_unit`; expected one of them",

@@ -119,6 +119,34 @@ fn a_repeated_face_does_not_open_a_box() {
     assert_all(&cube(&faces), Sides::Front);
 }
 
+/// A wall and a lamp with the same corners: in either order, with another wall, and where a scene file alone makes one of them shine.
+#[test]
+fn of_repeated_polygons_the_one_that_emits_stays() {
+    let mtl =
+        "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\nnewmtl paint\nKd .2 .2 .2\n";
+    let square = "v 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\n";
+    let kept = |materials: &[&str], toml: &str| {
+        let faces: String = (materials.iter().zip(["1 2 3 4", "2 3 4 1", "4 1 2 3"]))
+            .map(|(name, corners)| format!("usemtl {name}\nf {corners}\n"))
+            .collect();
+        let text = format!("mtllib it.mtl\n{square}{faces}");
+        let toml = format!("geometry = 'it.obj'\n{toml}");
+        let files = [("it.obj", &*text), ("it.mtl", mtl), ("scene.toml", &*toml)];
+        let (scene, warnings) = Files::new(&files).accepted("");
+        assert_eq!((scene.surfaces.len(), warnings.len()), (1, 1));
+        assert!(warnings[0].contains("repeated polygon"), "{warnings:?}");
+        let number = scene.surfaces[0].material as usize;
+        scene.materials[number].name.clone()
+    };
+    assert_eq!(kept(&["wall", "lamp"], ""), "lamp");
+    assert_eq!(kept(&["lamp", "wall"], ""), "lamp");
+    assert_eq!(kept(&["wall", "lamp", "paint"], ""), "lamp");
+    assert_eq!(kept(&["paint", "wall"], ""), "paint");
+    let paint_shines =
+        "[material.lamp]\nemitted_radiance = 0\n[material.paint]\nemitted_radiance = 1\n";
+    assert_eq!(kept(&["wall", "lamp", "paint"], paint_shines), "paint");
+}
+
 #[test]
 fn every_component_is_judged_alone() {
     let sheet = "v 5 0 0\nv 6 0 0\nv 6 1 0\nf 9 10 11";

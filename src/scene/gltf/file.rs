@@ -10,9 +10,10 @@ use ::gltf::{Document, Gltf};
 use std::path::{Path, PathBuf};
 
 /// Required extensions that make no difference to what is read, or are understood.
-const UNDERSTOOD: [&str; 5] = [
+const UNDERSTOOD: [&str; 6] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",

@@ -3,7 +3,7 @@
 use super::file::File;
 use super::nodes::Placed;
 use super::{Building, Reading, watts};
-use crate::scene::SceneError;
+use crate::scene::{SceneError, limits};
 use ::gltf::khr_lights_punctual::Kind;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -12,6 +12,7 @@ use std::f64::consts::PI;
 pub(super) struct Lights {
     list: Vec<Lamp>,
     radius: f64,
+    metres_per_unit: f64,
     left_out: usize,
 }
 
@@ -31,6 +32,7 @@ impl Lights {
         let mut lights = Self {
             list: Vec::new(),
             radius: how.point_light_radius.unwrap_or_default(),
+            metres_per_unit: how.metres_per_unit,
             left_out: 0,
         };
         let found = placed.iter().filter(|node| node.node.light().is_some());
@@ -46,7 +48,7 @@ impl Lights {
             return Ok(lights);
         }
         for node in found {
-            lights.list.extend(Lamp::of(file, node)?);
+            lights.list.extend(Lamp::of(file, node, lights.radius)?);
         }
         Ok(lights)
     }
@@ -64,7 +66,7 @@ impl Lights {
             // A sphere gives 4π times its intensity, π times its radiance and area; a square along its axis its radiance times its area.
             let share = if lamp.axis.is_none() { 4.0 } else { 1.0 };
             building.noticed.spots += usize::from(lamp.axis.is_some());
-            let radiance = share * lamp.intensity / area;
+            let radiance = share * lamp.intensity / (area * self.metres_per_unit.powi(2));
             let material = building.palette.light(lamp.name.clone(), radiance);
             for polygon in polygons {
                 let corners: Vec<u32> = polygon.iter().map(|p| building.welder.index(*p)).collect();
@@ -75,7 +77,7 @@ impl Lights {
 }
 
 impl Lamp {
-    fn of(file: &File, placed: &Placed) -> Result<Option<Self>, SceneError> {
+    fn of(file: &File, placed: &Placed, radius: f64) -> Result<Option<Self>, SceneError> {
         let Some(light) = placed.node.light() else {
             return Ok(None);
         };
@@ -90,11 +92,17 @@ impl Lamp {
                 return Err(file.error(found, "a large emitting surface instead"));
             }
         };
+        let place = placed.to_scene.transform_point3(DVec3::ZERO);
+        if place.is_nan() || place.abs().max_element() + radius > limits::COORDINATE {
+            let found = format!("a light at {place} (KHR_lights_punctual)");
+            let expected = format!("finite coordinates, at most {:e}", limits::COORDINATE);
+            return Err(file.error(found, &expected));
+        }
         let colour = DVec3::from(light.color().map(f64::from));
         let name = placed.node.name().or(light.name()).unwrap_or("light");
         Ok(Some(Self {
             name: name.to_owned(),
-            place: placed.to_scene.transform_point3(DVec3::ZERO),
+            place,
             axis,
             intensity: watts(colour * f64::from(light.intensity())),
         }))

@@ -14,11 +14,8 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 use std::path::Path;
 
-/// White, where there is no texture.
-const PLAIN: [u8; 3] = [255; 3];
-
-/// A material of the file (none for that of primitives without one) with the means of its two textures, as sRGB.
-type Key = (Option<usize>, [[u8; 3]; 2]);
+/// A material of the file (none for that of primitives without one) with the means of its two textures: as sRGB, and as the bits of numbers.
+type Key = (Option<usize>, [u8; 3], [u32; 3]);
 
 /// The materials that are used.
 pub(super) struct Palette<'a> {
@@ -68,12 +65,13 @@ impl<'a> Palette<'a> {
 
     /// The number of a material for a polygon of these triangles.
     pub fn material(&mut self, material: Material, triangles: &[[Corner; 3]]) -> u32 {
-        let [base, emission] = textures(&material);
-        let means = [(0, base), (1, emission)].map(|(which, info)| {
-            let texture = info.and_then(|info| self.texture(&info.texture()));
-            texture.map_or(PLAIN, |texture| code(texture.mean(triangles, which)))
-        });
-        let key = (material.index(), means);
+        let [base, emission] = textures(&material).map(|info| info.map(|info| info.texture()));
+        let base = base.and_then(|texture| self.texture(&texture));
+        let base = base.map_or(DVec3::ONE, |texture| texture.mean(triangles, 0));
+        let emission = emission.filter(|_| material.emissive_factor() != [0.0; 3]);
+        let emission = emission.and_then(|texture| self.texture(&texture));
+        let emission = emission.map_or(DVec3::ONE, |texture| texture.whole_mean(triangles, 1));
+        let key = (material.index(), code(base), rounded(emission));
         let number = match self.known.get(&key) {
             Some(known) => *known,
             None => self.define(&material, key),
@@ -107,24 +105,23 @@ impl<'a> Palette<'a> {
             .any(|other| *other != key && other.0 == key.0);
         let transparent = material.alpha_mode() != AlphaMode::Opaque;
         self.transparent += usize::from(new && transparent);
-        let [base, emission] = key.1.map(colour);
-        let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
+        let base = colour(key.1);
+        let emission = DVec3::from(key.2.map(|bits| f64::from(f32::from_bits(bits))));
+        let [r, g, b, _] = match material.pbr_specular_glossiness() {
+            Some(specular) => specular.diffuse_factor(),
+            None => material.pbr_metallic_roughness().base_color_factor(),
+        };
         let strength = f64::from(material.emissive_strength().unwrap_or(1.0));
         let emissive = DVec3::from(material.emissive_factor().map(f64::from)) * strength;
         let reflectance = self.stated(DVec3::from([r, g, b].map(f64::from)) * base);
         let radiance = self.stated(watts(emissive * emission));
-        let name = material.name().map(str::to_owned);
         self.entries.push(Entry {
             sides: Some(match material.double_sided() {
                 true => SidesRule::Both,
                 false => SidesRule::Front,
             }),
             defined: true,
-            ..entry(
-                name.unwrap_or_else(|| format!("material {}", index + 1)),
-                Some(reflectance),
-                Some(radiance),
-            )
+            ..entry(name(material, index), Some(reflectance), Some(radiance))
         });
         number
     }
@@ -158,7 +155,14 @@ impl<'a> Palette<'a> {
     }
 
     pub fn finish(self) -> Library {
-        Library::new(self.entries, self.default)
+        let all = self.file.document.materials();
+        let names = all.filter_map(|material| Some(name(&material, material.index()?)));
+        let unused = names
+            .filter(|name| !self.entries.iter().any(|entry| entry.name == *name))
+            .collect();
+        let mut library = Library::new(self.entries, self.default);
+        library.unused = unused;
+        library
     }
 }
 
@@ -173,13 +177,23 @@ fn entry(name: String, reflectance: Option<Stated>, emitted_radiance: Option<Sta
     }
 }
 
-/// The textures of base colour and emission.
+fn name(material: &Material, index: usize) -> String {
+    let number = || format!("material {}", index + 1);
+    material.name().map_or_else(number, str::to_owned)
+}
+
+/// The textures of base colour and emission. A material that has both ways to say what is reflected means the specular one, and the other
+/// is for programs that do not know it.
 fn textures<'a>(material: &Material<'a>) -> [Option<Info<'a>>; 2] {
-    let base = material.pbr_metallic_roughness().base_color_texture();
+    let base = match material.pbr_specular_glossiness() {
+        Some(specular) => specular.diffuse_texture(),
+        None => material.pbr_metallic_roughness().base_color_texture(),
+    };
     [base, material.emissive_texture()]
 }
 
-/// `KHR_texture_transform`: scaled, then turned, then moved.
+/// `KHR_texture_transform`: scaled, then turned, then moved. Counter-clockwise is seen in the texture, where v points down: from +u to -v.
+/// The matrix that the extension prints turns the other way, which is an error that no viewer follows (KhronosGroup/glTF, issue 1563).
 fn transformed(at: DVec2, transform: &::gltf::texture::TextureTransform) -> DVec2 {
     let [offset, scale] = [transform.offset(), transform.scale()];
     let [offset, scale] = [offset, scale].map(|v| DVec2::from(v.map(f64::from)));
@@ -196,6 +210,14 @@ fn transformed(at: DVec2, transform: &::gltf::texture::TextureTransform) -> DVec
 fn code(mean: DVec3) -> [u8; 3] {
     mean.to_array()
         .map(|c| (255.0 * srgb(c as f32)).round() as u8)
+}
+
+/// A mean to a two-thousandth of itself: what emits may be a few texels of many, times any strength, so no step is small enough for all.
+fn rounded(mean: DVec3) -> [u32; 3] {
+    const DROPPED: u32 = f32::MANTISSA_DIGITS - 1 - 10;
+    let half = 1 << (DROPPED - 1);
+    mean.to_array()
+        .map(|c| ((c as f32).to_bits() + half) >> DROPPED << DROPPED)
 }
 
 fn colour(code: [u8; 3]) -> DVec3 {

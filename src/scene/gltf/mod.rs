@@ -7,6 +7,7 @@
 mod accessor;
 mod camera;
 mod complete;
+mod coverage;
 mod file;
 mod lights;
 mod materials;

@@ -20,8 +20,10 @@ pub(super) struct Corner {
 
 /// A decoded texture.
 pub(super) struct Texture {
-    pixels: Pixels,
-    wrap: [WrappingMode; 2],
+    pub(super) pixels: Pixels,
+    /// What each of the 8-bit codes stands for.
+    linear: [f64; 256],
+    pub(super) wrap: [WrappingMode; 2],
 }
 
 impl Texture {
@@ -39,23 +41,22 @@ impl Texture {
         let sampler = texture.sampler();
         Ok(Self {
             pixels,
+            linear: std::array::from_fn(|code| f64::from(linear(code as f32 / 255.0))),
             wrap: [sampler.wrap_s(), sampler.wrap_t()],
         })
     }
 
-    /// The mean over triangles by area, linear; `which` of the corners' coordinates are this texture's.
+    /// The mean over triangles by area, linear, from samples; `which` of the corners' coordinates are this texture's.
     pub fn mean(&self, triangles: &[[Corner; 3]], which: usize) -> DVec3 {
-        let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
-        for triangle in triangles {
-            let [a, b, c] = triangle.map(|corner| corner.position);
-            let area = (b - a).cross(c - a).length();
-            sum += area * self.mean_of(triangle.map(|corner| corner.texture[which]));
-            weight += area;
-        }
-        match weight > 0.0 {
-            true => sum / weight,
-            false => DVec3::ONE,
-        }
+        mean_by_area(triangles, which, |corners| self.mean_of(corners))
+    }
+
+    /// The mean over triangles by area, linear, from all that lies under them.
+    pub fn whole_mean(&self, triangles: &[[Corner; 3]], which: usize) -> DVec3 {
+        mean_by_area(triangles, which, |corners| {
+            let mean = self.covered(corners);
+            mean.unwrap_or_else(|| self.mean_of(corners))
+        })
     }
 
     /// The mean over a triangle in the texture, from a point in each of equal triangles: anywhere in it, as evenly spaced ones may all fall
@@ -92,8 +93,30 @@ impl Texture {
     fn texel(&self, at: DVec2) -> DVec3 {
         let x = place(at.x, self.pixels.width, self.wrap[0]);
         let y = place(at.y, self.pixels.height, self.wrap[1]);
+        self.colour(x, y)
+    }
+
+    pub(super) fn colour(&self, x: usize, y: usize) -> DVec3 {
         let colour = self.pixels.colours[y * self.pixels.width as usize + x];
-        DVec3::from(colour.map(|c| f64::from(linear(f32::from(c) / 255.0))))
+        DVec3::from(colour.map(|code| self.linear[usize::from(code)]))
+    }
+}
+
+fn mean_by_area(
+    triangles: &[[Corner; 3]],
+    which: usize,
+    mean: impl Fn([DVec2; 3]) -> DVec3,
+) -> DVec3 {
+    let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| corner.position);
+        let area = (b - a).cross(c - a).length();
+        sum += area * mean(triangle.map(|corner| corner.texture[which]));
+        weight += area;
+    }
+    match weight > 0.0 {
+        true => sum / weight,
+        false => DVec3::ONE,
     }
 }
 

@@ -63,6 +63,20 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Geometry, 
     })
 }
 
+/// What is wrong with an item.
+struct Fault {
+    found: String,
+    expected: String,
+}
+
+impl From<String> for Fault {
+    /// Something that cannot be read as the header has it.
+    fn from(found: String) -> Self {
+        let expected = "what the header says".to_owned();
+        Self { found, expected }
+    }
+}
+
 struct Reader<'a> {
     path: &'a Path,
     body: Body<'a>,
@@ -84,15 +98,15 @@ impl Reader<'_> {
                 "face" => self.face(&element.properties),
                 _ => self.skip(&element.properties),
             };
-            read.map_err(|found| {
+            read.map_err(|Fault { found, expected }| {
                 let found = format!("{found} in {} {number} of {}", element.name, element.count);
-                SceneError::new(self.path, None, found, "what the header says")
+                SceneError::new(self.path, None, found, expected)
             })?;
         }
         Ok(())
     }
 
-    fn vertex(&mut self, properties: &[Property]) -> Result<(), String> {
+    fn vertex(&mut self, properties: &[Property]) -> Result<(), Fault> {
         let mut place = DVec3::ZERO;
         for property in properties {
             match (property.name.as_str(), property.shape) {
@@ -103,14 +117,17 @@ impl Reader<'_> {
             }
         }
         if place.is_nan() || place.abs().max_element() > limits::COORDINATE {
-            return Err(format!("the position {place}"));
+            return Err(Fault {
+                found: format!("the position {place}"),
+                expected: format!("finite coordinates, at most {:e}", limits::COORDINATE),
+            });
         }
         self.positions.push(place);
         self.welded.push(None);
         Ok(())
     }
 
-    fn face(&mut self, properties: &[Property]) -> Result<(), String> {
+    fn face(&mut self, properties: &[Property]) -> Result<(), Fault> {
         for property in properties {
             let corners = match property.shape {
                 Shape::List(count, item) if property.is_corners() => (count, item),
@@ -121,7 +138,10 @@ impl Reader<'_> {
             };
             let count = self.body.whole(corners.0)?;
             if !(3..=limits::CORNERS).contains(&count) {
-                return Err(format!("{count} corners"));
+                return Err(Fault {
+                    found: format!("a polygon with {count} corners"),
+                    expected: format!("3 to {} corners", limits::CORNERS),
+                });
             }
             let mut polygon = Vec::with_capacity(count);
             for _ in 0..count {
@@ -140,9 +160,10 @@ impl Reader<'_> {
         Ok(*self.welded[vertex].get_or_insert_with(|| self.welder.index(*place)))
     }
 
-    fn skip(&mut self, properties: &[Property]) -> Result<(), String> {
-        properties
-            .iter()
-            .try_for_each(|property| self.body.skip(property.shape))
+    fn skip(&mut self, properties: &[Property]) -> Result<(), Fault> {
+        for property in properties {
+            self.body.skip(property.shape)?;
+        }
+        Ok(())
     }
 }
