@@ -3,7 +3,7 @@
 use super::{Aim, Cluster, Clusters, Node, Sends};
 use crate::geometry::jitter;
 use crate::radiometry::Spectrum;
-use glam::{Vec3, Vec3Swizzles};
+use glam::{Mat3, Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 use std::mem::take;
 
@@ -115,6 +115,7 @@ impl Clusters {
             weight,
             centre,
             spread: inside.fold([Vec3::ZERO; 2], plus),
+            turn: Mat3::ZERO,
             colour: if mean > 0.0 {
                 radiosity / mean
             } else {
@@ -136,13 +137,16 @@ fn joined(a: Sends, b: Sends, draw: f32) -> Sends {
     }
     let drawn = if draw * weight < a.weight { a } else { b };
     let (of_a, of_b) = (a.weight / weight, b.weight / weight);
-    let apart = products(b.centre - a.centre, of_a * of_b);
+    let between = b.centre - a.centre;
+    let apart = products(between, of_a * of_b);
+    let turned = outer(b.flux * of_a - a.flux * of_b, between);
     let spread = [0, 1].map(|i| a.spread[i] * of_a + b.spread[i] * of_b + apart[i]);
     Sends {
         flux: a.flux + b.flux,
         weight,
         centre: a.centre * of_a + b.centre * of_b,
         spread,
+        turn: a.turn + b.turn + turned,
         colour: (a.colour * a.weight + b.colour * b.weight) / weight,
         ..drawn
     }
@@ -152,6 +156,11 @@ fn joined(a: Sends, b: Sends, draw: f32) -> Sends {
 fn products(of: Vec3, factor: f32) -> [Vec3; 2] {
     let scaled = of * factor;
     [of * scaled, of.yzx() * scaled.zxy()]
+}
+
+/// The products of the components of two vectors: those of `a` in each column.
+fn outer(a: Vec3, b: Vec3) -> Mat3 {
+    Mat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 fn plus(a: [Vec3; 2], b: [Vec3; 2]) -> [Vec3; 2] {

@@ -3,7 +3,7 @@
 //! What a scene of many small polygons radiates is cut into flat [`Tile`]s, and these are grouped by the way they face and then by
 //! where they are (`build.rs`). A cluster knows how large it is, into which cone its tiles face, and what it sends (`light.rs`):
 //! the sum w of area × radiosity, and the same sum with each tile's normal, P. Seen from far away it gives what all its tiles
-//! give together, `P·(-d) cosθ_r / π r²` with a term of second order for its size (`view.rs`), of which Eq. (1) is the case of a
+//! give together, `P·(-d) cosθ_r / π r²` with a term of second order for its size and its curvature (`view.rs`), of which Eq. (1) is the case of a
 //! disk on the axis.
 //!
 //! A point gathers from the coarsest clusters that its thresholds allow, and by Eq. (2) from single tiles where they do not
@@ -22,7 +22,7 @@ mod walk;
 pub use gather::ClusterScratch;
 
 use crate::radiometry::Spectrum;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 /// The children of a node over no more tiles than this are these. With 4, `staircase2` takes as long and a sixth more memory; with 16 it takes a
 /// thirtieth longer, and a tenth less memory.
@@ -158,6 +158,9 @@ struct Sends {
     centre: Vec3,
     /// … and their covariance, m²: xx, yy, zz and yz, zx, xy.
     spread: [Vec3; 2],
+    /// How their normals turn from place to place: Σ area × mean radiosity × normal × (place - centre), a column for each axis of the place. What
+    /// is hollow sends more to where it opens than a flat disk would.
+    turn: Mat3,
     /// The radiosity by channel over its mean.
     colour: Spectrum,
     aim: Aim,

@@ -16,26 +16,29 @@ const REFERENCE: f64 = 0.1;
 /// A ball of many triangles, or several, each with a radiosity of its own.
 fn balls(count: u32) -> Vec<Tile> {
     let mut tiles = Vec::new();
-    for ball in 0..count {
-        let [x, y] = jitter(ball, 7);
-        let [z, r] = jitter(ball, 8);
+    for number in 0..count {
+        let [x, y] = jitter(number, 7);
+        let [z, r] = jitter(number, 8);
         let centre = DVec3::new(x, y, z) * 4.0;
-        let radius = 0.1 + 0.3 * r;
-        let at = |u: u32, v: u32| {
-            let (a, b) = (
-                f64::from(u) * std::f64::consts::TAU / 24.0,
-                f64::from(v) * std::f64::consts::PI / 12.0,
-            );
-            centre + DVec3::new(b.sin() * a.cos(), b.sin() * a.sin(), b.cos()) * radius
-        };
-        for (u, v) in (0..24).flat_map(|u| (0..12).map(move |v| (u, v))) {
-            let corners = [at(u, v), at(u, v + 1), at(u + 1, v + 1), at(u + 1, v)];
-            for half in [[0, 1, 2], [0, 2, 3]] {
-                let [a, b, c] = half.map(|i| corners[i]);
-                let area = (b - a).cross(c - a);
-                if area.length() > 1e-9 {
-                    tiles.push(Tile::new(&[a, b, c], area.normalize(), false));
-                }
+        tiles.extend(ball(12, |way| centre + way * (0.1 + 0.3 * r)));
+    }
+    tiles
+}
+
+/// A ball of so many rings of triangles, from where it has its points in each direction.
+fn ball(rings: u32, point: impl Fn(DVec3) -> DVec3) -> Vec<Tile> {
+    let mut tiles = Vec::new();
+    let at = |u: u32, v: u32| {
+        let [a, b] = [u, v].map(|i| f64::from(i) * std::f64::consts::PI / f64::from(rings));
+        point(DVec3::new(b.sin() * a.cos(), b.sin() * a.sin(), b.cos()))
+    };
+    for (u, v) in (0..2 * rings).flat_map(|u| (0..rings).map(move |v| (u, v))) {
+        let corners = [at(u, v), at(u, v + 1), at(u + 1, v + 1), at(u + 1, v)];
+        for half in [[0, 1, 2], [0, 2, 3]] {
+            let [a, b, c] = half.map(|i| corners[i]);
+            let area = (b - a).cross(c - a);
+            if area.length() > 1e-9 {
+                tiles.push(Tile::new(&[a, b, c], area.normalize(), false));
             }
         }
     }
@@ -244,9 +247,35 @@ fn box_from_inside() -> (Vec<Tile>, Vec<(Receiver, u32)>) {
     (tiles, receivers)
 }
 
+/// The inside of a ball, and points on it.
+fn ball_from_inside() -> (Vec<Tile>, Vec<(Receiver, u32)>) {
+    // Mirrored, its triangles face inwards.
+    let tiles = ball(48, |way| way * DVec3::new(-1.0, 1.0, 1.0) + 2.0);
+    let receiver = |number: u32| {
+        let tile = &tiles[number as usize * 7];
+        let receiver = Receiver {
+            point: tile.at(0.4, 0.3).as_dvec3(),
+            normal: tile.normal.as_dvec3(),
+            irradiance: 1.0,
+        };
+        (receiver, number)
+    };
+    let receivers = (0..1200).map(receiver).collect();
+    (tiles, receivers)
+}
+
 #[test]
 fn in_a_closed_box_the_parts_of_all_clusters_add_up_to_one() {
-    let (tiles, receivers) = box_from_inside();
+    assert_closed(box_from_inside());
+}
+
+/// Here all tiles of a cluster face what is inside more than their mean normal from their mean place does.
+#[test]
+fn in_a_closed_ball_they_do_too() {
+    assert_closed(ball_from_inside());
+}
+
+fn assert_closed((tiles, receivers): (Vec<Tile>, Vec<(Receiver, u32)>)) {
     for settled in [false, true] {
         let ones = vec![Spectrum::ONE; tiles.len()];
         let found = gathered(&tiles, ones, &receivers, 0.02, settled);

@@ -148,14 +148,16 @@ impl Sends {
     }
 
     /// What arrives, mean of the channels, at points that see the whole of a cluster: the kernel (P·x)(n·x)/π r⁴ at the centre,
-    /// and its term of second order for the covariance M of the sources,
-    /// ½ M:∇∇ = (PMn - 4 (b PMx + a nMx)/r² + ab (12 xMx/r² - 2 tr M)/r²) / π r⁴ with a = P·x and b = n·x. For a disk on the axis it
-    /// begins like Eq. (1).
+    /// and its terms of second order: for the covariance M of the sources
+    /// ½ M:∇∇ = (PMn - 4 (b PMx + a nMx)/r² + ab (12 xMx/r² - 2 tr M)/r²) / π r⁴ with a = P·x and b = n·x, of which for a disk on the axis
+    /// Eq. (1) begins; and for the way T in which their normals turn (b tr T + xTn - 4 b xTx/r²) / π r⁴. Without that one all that is seen of a
+    /// sphere from inside was 2 to 3 % too dark.
     #[inline(always)]
     pub(super) fn arriving(&self, of: &Rows, radius: f32) -> Row {
         let [diagonal, mixed] = self.spread;
         let times = |v: Vec3| diagonal * v + mixed.zxy() * v.yzx() + mixed.yzx() * v.zxy();
         let trace = diagonal.element_sum();
+        let turn = self.turn.x_axis.x + self.turn.y_axis.y + self.turn.z_axis.z;
         let mut arriving = [0.0; LANES];
         for (lane, arriving) in arriving.iter_mut().enumerate() {
             let (to, normal) = (of.to(self.centre, lane), of.normal(lane));
@@ -163,9 +165,12 @@ impl Sends {
             let square = to.length_squared().max(radius * radius);
             let (a, b) = (-self.flux.dot(to), normal.dot(to));
             let (of_normal, of_to) = (times(normal), times(to));
+            let (turn_normal, turn_to) = (self.turn * normal, self.turn * to);
+            let turned = b * turn + to.dot(turn_normal) - 4.0 * b * to.dot(turn_to) / square;
             let change = -self.flux.dot(of_normal)
                 - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) / square
-                + a * b * (12.0 * to.dot(of_to) / square - 2.0 * trace) / square;
+                + a * b * (12.0 * to.dot(of_to) / square - 2.0 * trace) / square
+                - turned;
             let plain = (a * b).max(0.0);
             let change = change.max(-MOST_GAIN * plain).min(MOST_GAIN * plain);
             *arriving = (plain + change) / (PI * square * square);
