@@ -1,6 +1,6 @@
 //! The bounds of what a scene may hold, each far outside of what any real one does.
 
-/// The largest coordinate, in scene units: as large as what the visibility engines take.
+/// The largest coordinate, in scene units; what is traced is scaled first.
 pub(super) const COORDINATE: f64 = 1e18;
 
 /// The largest radiance, W m⁻² sr⁻¹: what is summed of it stays within single precision.
