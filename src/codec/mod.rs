@@ -8,6 +8,10 @@ pub use base64::{base64, from_base64};
 pub use jpeg::decode_jpeg;
 pub use png::{decode_png, encode_png};
 
+/// The most pixels along a side of a picture that is decoded: a file of a hundred bytes may say that it is a million wide and high, and
+/// memory is taken before it is seen that it is not.
+const LARGEST: u32 = 16384;
+
 /// A picture of 8-bit colours, rows from the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pixels {

@@ -1,6 +1,6 @@
 //! PNG: pictures to look at, and textures.
 
-use super::Pixels;
+use super::{LARGEST, Pixels};
 use ::png::{
     BitDepth, ColorType, Decoder, Encoder, EncodingError, SrgbRenderingIntent, Transformations,
 };
@@ -37,6 +37,12 @@ pub fn decode_png(bytes: &[u8]) -> Result<Pixels, String> {
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::EXPAND | Transformations::STRIP_16);
     let mut reader = decoder.read_info().map_err(|error| error.to_string())?;
+    let (width, height) = reader.info().size();
+    if width.max(height) > LARGEST {
+        return Err(format!(
+            "it has {width} x {height} pixels, more than {LARGEST} along a side"
+        ));
+    }
     let size = reader.output_buffer_size().ok_or("it is too large")?;
     let mut samples = vec![0; size];
     let frame = reader
@@ -50,4 +56,24 @@ pub fn decode_png(bytes: &[u8]) -> Result<Pixels, String> {
         &samples[..frame.buffer_size()],
     )
     .ok_or_else(|| "its size does not fit its contents".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_memory_is_taken_for_a_picture_that_only_says_it_is_huge() {
+        for (width, height) in [(1 << 20, 1 << 20), (LARGEST + 1, 1), (1, i32::MAX as u32)] {
+            let mut bytes = Vec::new();
+            let mut encoder = Encoder::new(&mut bytes, width, height);
+            encoder.set_color(ColorType::Rgb);
+            let mut writer = encoder.write_header().expect("memory can be written to");
+            let data = writer.write_chunk(::png::chunk::IDAT, b"nothing");
+            data.expect("memory can be written to");
+            drop(writer);
+            let error = decode_png(&bytes).expect_err("is too large");
+            assert!(error.contains("more than 16384 along a side"), "{error}");
+        }
+    }
 }

@@ -19,6 +19,9 @@ const MOST_INWARDS: f64 = 0.15;
 /// … or this one, if it is beside a thin gap that it must not look into. Narrow strips lie in such gaps.
 const MOST_BESIDE_GAP: f64 = 0.5;
 
+/// The deepest level of an element: the lattice has 28 halvings, and a grid of the coarsest level takes up to ten of them.
+pub(super) const DEEPEST: u32 = 17;
+
 impl Mesh {
     /// Length of the longest side of an element, in frame units.
     pub fn longest_side(&self, element: u32) -> f64 {
@@ -36,8 +39,7 @@ impl Mesh {
     /// Whether an element may be split, were it as small as this fraction of the scene's extent that none may.
     pub fn may_split_above(&self, element: u32, min_size: f64) -> bool {
         let level = u32::from(self.element(element).level);
-        // The lattice has 28 halvings; a grid of the coarsest level takes up to ten of them.
-        level < self.limits.max_depth.min(17)
+        level < self.limits.max_depth.min(DEEPEST)
             && self.longest_side(element) > min_size * self.frame.extent()
     }
 
@@ -54,30 +56,11 @@ impl Mesh {
         debug_assert!(parent.is_leaf());
         self.touch(parent.patch);
         let first = self.elements.len() as u32;
-        let at = |mesh: &Self, v: u32| mesh.lattice_of(v);
-        let [a, b, c] = [0, 1, 2].map(|i| at(self, parent.corners[i]));
-        let mut children: [[Lattice; 4]; 4];
         let count = parent.corners().len();
-        if count == 3 {
-            let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
-            children = [
-                [a, ab, ca, a],
-                [ab, b, bc, a],
-                [ca, bc, c, a],
-                [bc, ca, ab, a],
-            ];
-        } else {
-            let d = at(self, parent.corners[3]);
-            let m = at(self, parent.centre);
-            let (ab, bc, cd, da) = (a.midpoint(b), b.midpoint(c), c.midpoint(d), d.midpoint(a));
-            children = [
-                [a, ab, m, da],
-                [ab, b, bc, m],
-                [m, bc, c, cd],
-                [da, m, cd, d],
-            ];
-        }
-        for corners in &mut children {
+        let last = count - 1;
+        let corners = [0, 1, 2, last].map(|i| self.lattice_of(parent.corners[i]));
+        let children = quarters(&corners[..count], self.lattice_of(parent.centre));
+        for corners in &children {
             let corners = &corners[..count];
             let mut child = Element {
                 corners: [NONE; 4],
@@ -234,4 +217,26 @@ impl Mesh {
         self.integrate(&touched);
         self.touched = Vec::new();
     }
+}
+
+/// The corners of the four parts of an element with these corners and this centre; of a triangle's parts the first three.
+pub(super) fn quarters(corners: &[Lattice], centre: Lattice) -> [[Lattice; 4]; 4] {
+    let [a, b, c] = [0, 1, 2].map(|i| corners[i]);
+    let (ab, bc) = (a.midpoint(b), b.midpoint(c));
+    if let Some(&d) = corners.get(3) {
+        let (cd, da) = (c.midpoint(d), d.midpoint(a));
+        return [
+            [a, ab, centre, da],
+            [ab, b, bc, centre],
+            [centre, bc, c, cd],
+            [da, centre, cd, d],
+        ];
+    }
+    let ca = c.midpoint(a);
+    [
+        [a, ab, ca, a],
+        [ab, b, bc, a],
+        [ca, bc, c, a],
+        [bc, ca, ab, a],
+    ]
 }

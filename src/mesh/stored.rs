@@ -84,10 +84,18 @@ impl StoredMesh {
         };
         check(clearances.iter().all(is_sound), "a clearance")?;
         let (mut patches, mut known) = (Patches::default(), Known::default());
-        let mut later = FxHashMap::default();
+        let (mut later, mut listed) = (FxHashMap::default(), 0);
         for (number, of) in (0..).zip(self.patches) {
-            let within = |v: &u32| (*v as usize) < self.vertices.len();
-            check(of.vertices.iter().all(within), "a vertex of a patch")?;
+            let is_its_own = |v: &u32| {
+                let vertex = self.vertices.get(*v as usize);
+                vertex.is_some_and(|vertex| vertex.patch == number)
+            };
+            let is_sound = of.vertices.is_sorted_by(|a, b| a < b);
+            check(
+                is_sound && of.vertices.iter().all(is_its_own),
+                "a vertex of a patch",
+            )?;
+            listed += of.vertices.len();
             let (patch, vertices) = of.patch(&patches, self.elements.len())?;
             let first = patch.first_vertices().len();
             if vertices.len() > first {
@@ -95,6 +103,7 @@ impl StoredMesh {
             }
             patches.push(&patch, &mut known);
         }
+        check(listed == self.vertices.len(), "a vertex of no patch")?;
         let mut mesh = Mesh {
             patches,
             later,

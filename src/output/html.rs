@@ -1,5 +1,6 @@
 //! What a solve says of itself, on one page: `report.html`, with pictures and curves inside, no script and nothing to fetch.
 
+use super::markup::{escaped, header, row};
 use super::plot::Plot;
 use super::{WriteError, write_atomically};
 use crate::codec::base64;
@@ -350,43 +351,4 @@ fn plain(value: &serde_json::Value) -> String {
         serde_json::Value::String(text) => text.clone(),
         other => other.to_string(),
     }
-}
-
-fn header(cells: &[&str]) -> String {
-    let cell = |(place, text): (usize, &&str)| {
-        let class = if place == 0 { "" } else { " class=\"n\"" };
-        format!("<th{class}>{}</th>", escaped(text))
-    };
-    let cells: String = cells.iter().enumerate().map(cell).collect();
-    format!("<tr>{cells}</tr>\n")
-}
-
-/// A row of which some cells are numbers.
-fn row(cells: &[&str], numbers: &[usize]) -> String {
-    let cell = |(place, text): (usize, &&str)| {
-        let class = if numbers.contains(&place) {
-            " class=\"n\""
-        } else {
-            ""
-        };
-        format!("<td{class}>{}</td>", escaped(text))
-    };
-    let cells: String = cells.iter().enumerate().map(cell).collect();
-    format!("<tr>{cells}</tr>\n")
-}
-
-/// Text as HTML and XML want it; control characters, which XML has not, as spaces.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            c if c.is_control() => escaped.push(' '),
-            c => escaped.push(c),
-        }
-    }
-    escaped
 }

@@ -8,6 +8,7 @@ mod blocks;
 mod exr;
 mod glb;
 mod html;
+mod markup;
 mod matrix;
 mod obj;
 mod picture;

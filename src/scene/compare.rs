@@ -1,6 +1,8 @@
 //! Whether two scenes differ in more than what their surfaces emit, and whether one that was stored is sound.
 
-use super::{Scene, Surface};
+use super::cameras::names_a_file;
+use super::text::quote;
+use super::{Camera, Scene, Surface, limits};
 
 impl Scene {
     /// Refuses a scene that differs in anything that light depends on but emission; the error says in what.
@@ -38,7 +40,7 @@ impl Scene {
         corners.map(|v| self.vertices[*v as usize]).collect()
     }
 
-    /// Checks the indices of a scene that was stored. The error says what does not fit.
+    /// Checks the indices, the unit and the cameras of a scene that was stored. The error says what does not fit.
     pub fn check(&self) -> Result<(), String> {
         let vertices = self.vertices.len() as u64;
         let sound = |surface: &Surface| {
@@ -52,6 +54,98 @@ impl Scene {
         if !self.vertices.iter().all(|v| v.is_finite()) {
             return Err("a corner that is nowhere".into());
         }
-        Ok(())
+        check_unit(self.metres_per_unit)?;
+        self.cameras.iter().try_for_each(Camera::check)
+    }
+}
+
+/// Checks the length of a stored scene's unit. The error says what was found.
+pub(crate) fn check_unit(metres: f64) -> Result<(), String> {
+    if limits::UNIT.contains(&metres) {
+        return Ok(());
+    }
+    let (least, most) = (limits::UNIT.start(), limits::UNIT.end());
+    Err(format!(
+        "a unit of {metres} m, where it has from {least:e} to {most:e}"
+    ))
+}
+
+impl Camera {
+    /// Checks a camera that was stored, as those of scene files are: pictures are written under its name. A view of the whole of a scene may be
+    /// from far outside of it, so coordinates need only be finite. The error says what does not fit.
+    pub fn check(&self) -> Result<(), String> {
+        let sizes = [self.width, self.height];
+        let numbers = [self.eye, self.look_at, self.up];
+        let rules = [
+            (
+                names_a_file(&self.name),
+                "a name that can be part of a file's",
+            ),
+            (
+                numbers.iter().all(|of| of.is_finite()),
+                "finite coordinates",
+            ),
+            (
+                self.horizontal_fov > 0.0 && self.horizontal_fov < 180.0,
+                "a field of view between 0 and 180 degrees",
+            ),
+            (
+                sizes.iter().all(|of| (1..=limits::PIXELS).contains(of)),
+                "1 to 16384 pixels each way",
+            ),
+            (
+                self.exposure.is_none_or(f64::is_finite),
+                "a finite number of stops",
+            ),
+        ];
+        match rules.iter().find(|(holds, _)| !holds) {
+            None => Ok(()),
+            Some((_, rule)) => Err(format!("a camera {} without {rule}", quote(&self.name))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn the_view_of_a_scene_at_the_limit_of_coordinates_is_sound() {
+        let limit = DVec3::splat(limits::COORDINATE);
+        let far = crate::scene::cameras::overview((-limit, limit));
+        assert_eq!(far.check(), Ok(()));
+    }
+
+    #[test]
+    fn a_camera_that_no_scene_file_may_have_is_not() {
+        let sound = crate::scene::cameras::overview((DVec3::ZERO, DVec3::ONE));
+        let refused = |spoil: &dyn Fn(&mut Camera), words: &str| {
+            let mut camera = sound.clone();
+            spoil(&mut camera);
+            let found = camera.check().expect_err(words);
+            assert!(found.contains(words), "{found}");
+        };
+        for name in ["", "/tmp/view", "../view", "a\\b", ".hidden", "a\nb"] {
+            refused(&|of| name.clone_into(&mut of.name), "part of a file's");
+        }
+        refused(&|of| of.eye.x = f64::NAN, "finite coordinates");
+        refused(&|of| of.look_at.y = f64::INFINITY, "finite coordinates");
+        refused(&|of| of.up.z = f64::NAN, "finite coordinates");
+        refused(&|of| of.horizontal_fov = 180.0, "field of view");
+        refused(&|of| of.horizontal_fov = f64::NAN, "field of view");
+        refused(&|of| of.width = 0, "pixels");
+        refused(&|of| of.height = limits::PIXELS + 1, "pixels");
+        refused(&|of| of.exposure = Some(f64::INFINITY), "stops");
+    }
+
+    #[test]
+    fn a_unit_has_a_length_that_areas_stay_numbers_in() {
+        for metres in [1e-3, 1.0, 0.3048] {
+            assert_eq!(check_unit(metres), Ok(()));
+        }
+        for metres in [0.0, -1.0, 1e-13, 1e13, f64::NAN] {
+            check_unit(metres).expect_err("is none");
+        }
     }
 }

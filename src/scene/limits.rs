@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-/// The largest coordinate, in scene units: as large as what the visibility engines take.
+/// The largest coordinate, in scene units; what is traced is scaled first.
 pub(super) const COORDINATE: f64 = 1e18;
 
 /// The shortest and the longest unit of length, in metres: areas and powers in it stay numbers.

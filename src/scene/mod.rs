@@ -92,6 +92,7 @@ mod warnings;
 mod weld;
 
 pub(crate) use backs::back_to_back;
+pub(crate) use compare::check_unit;
 pub use error::SceneError;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};

@@ -230,7 +230,7 @@ impl Builder<'_> {
         number
     }
 
-    /// Takes the light from buried vertices that no triangle shares with an open one: nothing arrives there.
+    /// Takes the light from buried vertices that no triangle shares with an open one: nothing arrives there, and only what they emit leaves.
     fn finish(mut self) -> LitMesh {
         let mut beside_open = vec![false; self.lit.vertices.len()];
         for triangle in &self.lit.triangles {
@@ -241,9 +241,12 @@ impl Builder<'_> {
                     .for_each(|v| beside_open[*v as usize] = true);
             }
         }
-        for (vertex, beside_open) in self.lit.vertices.iter_mut().zip(beside_open) {
-            if !beside_open {
-                vertex.radiosity = Spectrum::ZERO;
+        for triangle in &self.lit.triangles {
+            let patch = self.mesh.elements.patch_of(triangle.element);
+            let covered = triangle.vertices.into_iter().map(|v| v as usize);
+            for vertex in covered.filter(|v| !beside_open[*v]) {
+                let vertex = &mut self.lit.vertices[vertex];
+                vertex.radiosity = self.mesh.patch(patch).exitance;
                 vertex.irradiance = Spectrum::ZERO;
             }
         }

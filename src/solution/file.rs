@@ -6,7 +6,7 @@
 
 use super::{Continuation, Report, Solution, format_1};
 use crate::mesh::StoredMesh;
-use crate::scene::Camera;
+use crate::scene::{Camera, check_unit};
 use crate::solver::Light;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -85,6 +85,9 @@ impl<W: Write> Write for Payload<'_, W> {
 
 impl Solution {
     /// Writes the solution file's bytes, the header last: what it says of the payload is known when that is written.
+    ///
+    /// # Errors
+    /// When `out` cannot be written to, or a number of the report is not finite: JSON has no such numbers, and the file could not be read.
     pub fn write(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
         let begin = out.stream_position()?;
         out.write_all(&[0; HEADER])?;
@@ -103,7 +106,7 @@ impl Solution {
     /// of a large scene takes.
     fn write_payload(&self, out: &mut impl Write) -> io::Result<(u64, u32)> {
         let stored = Stored {
-            report: serde_json::to_string(&self.report)?,
+            report: stored_report(&self.report)?,
             cameras: Cow::Borrowed(&self.cameras),
             metres_per_unit: self.metres_per_unit,
             mesh: &self.mesh,
@@ -191,8 +194,10 @@ impl Solution {
         solution.checked()
     }
 
-    /// Checks that the parts fit each other.
+    /// Checks that the parts fit each other, and what nothing else follows from.
     fn checked(self) -> Result<Self, String> {
+        check_unit(self.metres_per_unit)?;
+        self.cameras.iter().try_for_each(Camera::check)?;
         let (vertices, patches) = (self.mesh.vertices.len(), self.mesh.patches.len());
         let light = &self.light;
         if light.irradiance.len() != vertices || light.unshot.len() != vertices {
@@ -216,6 +221,21 @@ impl Solution {
         }
         Ok(self)
     }
+}
+
+/// The report as JSON, if it can be read back.
+fn stored_report(report: &Report) -> io::Result<String> {
+    let json = serde_json::to_string(report)?;
+    let Err(error) = serde_json::from_str::<Report>(&json) else {
+        return Ok(json);
+    };
+    // All of it is on one line; the last key before the fault is that of the number.
+    let before = json.as_bytes().get(..error.column()).unwrap_or_default();
+    let before = String::from_utf8_lossy(before);
+    let key = before.rsplit('"').nth(1).unwrap_or_default();
+    let found =
+        format!("`{key}` of the report is not a number; expected one that is finite ({error})");
+    Err(io::Error::new(io::ErrorKind::InvalidData, found))
 }
 
 pub(super) fn undecodable(error: impl std::fmt::Display) -> String {

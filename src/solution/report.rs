@@ -2,7 +2,7 @@
 
 use crate::radiometry::Power;
 use crate::solver::{Audit, Changes, Ledger, MeshingEnd, Options, Parts, StopReason};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::path::PathBuf;
 
 /// The facts of a solve; serialised as `report.json`.
@@ -10,8 +10,8 @@ use std::path::PathBuf;
 pub struct Report {
     /// Name of the scene.
     pub scene: String,
-    /// Where the command read it, from the root on: what refers to it may be run elsewhere.
-    #[serde(default)]
+    /// Where the command read it, from the root on: what refers to it may be run elsewhere. What of it is not Unicode is stored as U+FFFD.
+    #[serde(default, serialize_with = "as_text")]
     pub scene_file: Option<PathBuf>,
     /// Who traced the rays.
     pub engine: EngineReport,
@@ -59,6 +59,13 @@ pub struct Report {
     pub options: Options,
     /// What was suspicious in the input.
     pub warnings: Vec<String>,
+}
+
+/// A path as text: JSON has no other strings, and no name may keep a solve from being stored.
+fn as_text<S: Serializer>(path: &Option<PathBuf>, serializer: S) -> Result<S::Ok, S::Error> {
+    path.as_ref()
+        .map(|path| path.to_string_lossy())
+        .serialize(serializer)
 }
 
 /// What became of `--target-error`.

@@ -35,8 +35,10 @@ pub const T_FAR: f32 = 1.0 - 1e-5;
 /// Most targets of one fan: a mask has one bit for each.
 pub const MAX_FAN: usize = 64;
 
-/// The largest coordinate that is traced: a product of two of them is still a single-precision number.
-pub const COORDINATE_LIMIT: f32 = 1e18;
+/// The largest coordinate that is traced. Engines compare volumes, products of three lengths of which each is at most twice as long; the sums
+/// of these are still single-precision numbers. So are the errors of such volumes where the lengths are 1e-10 or more: nothing smaller and
+/// as near should be traced. Callers scale what they trace; a solve to an extent of 64 to 128.
+pub const COORDINATE_LIMIT: f32 = 1e12;
 
 /// Fans of segments: each from one origin (a receiving point) to at most [`MAX_FAN`] targets (sample
 /// points on one shooter). Filled by the caller, reused between queries; targets lie in three arrays.

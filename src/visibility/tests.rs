@@ -183,6 +183,37 @@ fn segments_that_cannot_be_traced_meet_nothing() {
     assert_nearest(&square(), good, Vec3::ZERO, None);
 }
 
+/// Single precision has numbers for all that the engines compute up to the limit of coordinates, and down to the least size that they promise.
+#[test]
+fn the_largest_and_the_smallest_triangles_that_may_be_traced_are_met() {
+    for scale in [COORDINATE_LIMIT, 1e-10] {
+        let corner = |v: &Vec3| (2.0 * *v - vec3(1.0, 1.0, 0.0)) * scale;
+        let large = Triangles {
+            vertices: square().vertices.iter().map(corner).collect(),
+            ..square()
+        };
+        for step in 0..81 {
+            let place = |k: u32| (step / 3_u32.pow(k) % 3) as f32 * 0.3 - 0.33;
+            let from = vec3(place(0), place(1), 0.5) * scale;
+            let to = vec3(place(2), place(3), -0.45) * scale;
+            assert_occluded(&large, from, to, true);
+            assert_occluded(&large, from, from * vec3(1.0, 1.0, 0.5), false);
+            let hits = 0.5 / 0.95;
+            for engine in engines(&large) {
+                let ray = Ray {
+                    origin: from,
+                    direction: to - from,
+                };
+                let mut found = Vec::new();
+                engine.nearest(&[ray], &mut found);
+                let t = found[0].map(|hit| hit.t);
+                let name = engine.info().name;
+                assert!(t.is_some_and(|t| (t - hits).abs() < 1e-5), "{name}: {t:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_bad_segment_leaves_its_neighbours_alone() {
     let mut fans = Fans::default();

@@ -1,5 +1,6 @@
 //! The files: whole or absent, and reading back what was written.
 
+mod atomic;
 mod meshes;
 
 use glam::{DVec3, Vec3};

@@ -124,3 +124,24 @@ fn no_light_passes_through_the_wall_behind_a_narrow_ledge() {
         assert_eq!(lit.fold(0.0, f64::max), 0.0, "{engine:?}");
     }
 }
+
+/// Nothing arrives below the box, but a floor that emits does so there too: B = M + ρE at every vertex of an export, as it is probed.
+#[test]
+fn an_emitter_below_a_solid_has_its_exitance() {
+    let mut scene = scene(0.5);
+    scene.materials[0].emitted_radiance = glam::Vec3::splat(2.0 / std::f32::consts::PI);
+    let solution = solved(&scene, draft());
+    let lit = solution.lit_mesh();
+    let of_floor = lit.triangles.iter().filter(|t| t.polygon == 0);
+    let vertices = of_floor.flat_map(|t| t.vertices.map(|v| lit.vertices[v as usize]));
+    let (mut covered, prober) = (0, Prober::new(&solution));
+    for vertex in vertices {
+        let expected = 2.0 + 0.5 * vertex.irradiance.x;
+        assert!((vertex.radiosity.x - expected).abs() < 1e-5, "{vertex:?}");
+        covered += usize::from(vertex.irradiance.x == 0.0);
+    }
+    assert!(covered > 0, "some vertices lie below the box");
+    let below = DVec3::new(0.1, 0.0, 0.1);
+    let probe = prober.probe(below, DVec3::Y).expect("lies on the floor");
+    assert!((probe.radiosity.x - 2.0).abs() < 1e-5, "{probe:?}");
+}

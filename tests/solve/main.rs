@@ -10,6 +10,7 @@ mod corner;
 mod energy;
 mod estimate;
 mod exact_floor;
+mod files;
 mod furnace;
 mod integral;
 mod path_traced;

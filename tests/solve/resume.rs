@@ -3,7 +3,6 @@
 use super::common::ENGINE;
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
-use radiosity::mesh::{Element, Lattice, Vertex};
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
 use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
@@ -11,7 +10,7 @@ use radiosity::visibility::EngineChoice;
 use radiosity::{Run, Settings, SolveError, solve};
 
 /// Bytes of a solution file before its payload.
-const HEADER: usize = 24;
+pub(super) const HEADER: usize = 24;
 
 /// Lets some batches of work be done, then stops.
 pub(super) struct Batches(pub usize);
@@ -189,105 +188,4 @@ fn a_file_of_the_second_format_is_continued() {
     run.go(&mut Silent).expect("can be solved");
     let whole = solve(&scene, &how, &mut Silent).expect("can be solved");
     assert_eq!(run.finish().light.irradiance, whole.light.irradiance);
-}
-
-/// A checksum that holds does not make the contents sound: whatever is wrong with them is found before they are used.
-#[test]
-fn a_file_whose_parts_do_not_fit_each_other_is_refused() {
-    let scene = bundled("geometry");
-    let how = settings(draft(), EngineChoice::Obvhs, 1);
-    let mut run = Run::new(scene, how).expect("can be solved");
-    run.go(&mut Batches(4)).expect("can be solved");
-    let whole = run.finish();
-    assert!(Solution::decode(&file(&whole)).is_ok());
-    let refused = |spoil: &dyn Fn(&mut Solution), words: &str| {
-        let mut spoilt = whole.clone();
-        spoil(&mut spoilt);
-        let error = Solution::decode(&file(&spoilt)).expect_err(words);
-        assert!(error.contains(words), "{error}");
-    };
-    refused(&|s| s.mesh.buried.truncate(1), "buried");
-    refused(&|s| s.light.irradiance.truncate(1), "does not fit the mesh");
-    refused(&|s| s.light.exitance_unshot.truncate(1), "exitance");
-    refused(&|s| s.light.unshot[0].x = f32::INFINITY, "no number");
-    let scene = |s: &mut Solution, spoil: &dyn Fn(&mut Scene)| {
-        spoil(&mut s.continuation.as_mut().expect("is kept").scene);
-    };
-    refused(&|s| scene(s, &|of| of.vertices.truncate(2)), "a surface");
-    refused(&|s| scene(s, &|of| of.surfaces.truncate(1)), "no surface");
-    refused(&|s| scene(s, &|of| of.vertices[0].y = f64::NAN), "nowhere");
-}
-
-/// What a file says of a patch must be what follows from its corners, and from the elements and vertices that there are; and they must be
-/// of a patch that there is.
-#[test]
-fn a_file_whose_mesh_is_not_sound_is_refused() {
-    let how = settings(draft(), EngineChoice::Obvhs, 1);
-    let run = Run::new(bundled("geometry"), how).expect("can be solved");
-    let whole = run.finish();
-    let written = file(&whole);
-    let payload = &written[HEADER..];
-    assert!(Solution::from_payload(payload).is_ok());
-    let refused = |known: Vec<u8>, instead: Vec<u8>, words: &str| {
-        let mut places = payload.windows(known.len());
-        let at = places.position(|bytes| bytes == known).expect("is there");
-        let rest = &payload[at + known.len()..];
-        let spoilt = [&payload[..at], &instead, rest].concat();
-        let error = Solution::from_payload(&spoilt).expect_err(words);
-        assert!(error.contains(words), "{error}");
-    };
-    let of = whole.mesh.patch(1);
-    let (normal, area) = (of.normal, of.area);
-    refused(encoded((normal, area)), encoded((-normal, area)), "a patch");
-    refused(
-        encoded((normal, area)),
-        encoded((normal, f64::NAN)),
-        "a patch",
-    );
-    let begin = |end: u32| encoded((of.exitance, of.roots.start, end, of.grid));
-    refused(begin(of.roots.end), begin(1 << 20), "a root");
-    refused(begin(of.roots.end), begin(of.roots.end + 1), "a grid");
-    let grid = (1u32 << 16, 1u32 << 16);
-    let wide = encoded((of.exitance, of.roots.start, of.roots.end, grid));
-    refused(begin(of.roots.end), wide, "a grid");
-    let mut vertices: Vec<u32> = whole.mesh.vertices_of(1).collect();
-    let known = encoded((of.grid, &vertices));
-    vertices[0] = u32::MAX;
-    refused(known, encoded((of.grid, &vertices)), "a vertex of a patch");
-    let Vertex { patch, lattice, .. } = whole.mesh.vertex(3);
-    let vertex = |patch, lattice| encoded((patch, lattice, whole.mesh.point(3)));
-    let known = vertex(patch, lattice);
-    refused(known.clone(), vertex(1 << 20, lattice), "a vertex");
-    refused(known, vertex(patch, Lattice::new(u32::MAX, 0)), "a vertex");
-    let last = whole.mesh.elements.len() as u32 - 1;
-    let known = encoded(whole.mesh.element(last));
-    let element = |spoil: &dyn Fn(&mut Element)| {
-        let mut element = whole.mesh.element(last);
-        spoil(&mut element);
-        encoded(element)
-    };
-    let far = element(&|of| of.corners[0] = 1 << 30);
-    refused(known.clone(), far, "a corner");
-    let circular = element(&|of| of.children = 0);
-    refused(known, circular, "the children");
-    let root = whole.mesh.element(0);
-    let other = Element {
-        centre: root.corners[0],
-        ..root
-    };
-    refused(encoded(root), encoded(other), "an element of a grid");
-    let clearances = whole.mesh.clearances();
-    let first = |patch, clearance| {
-        let mut clearances = clearances.clone();
-        clearances[0] = (patch, clearance);
-        encoded(clearances)
-    };
-    let (patch, clearance) = clearances[0];
-    let known = first(patch, clearance);
-    refused(known.clone(), first(1 << 20, clearance), "a clearance");
-    refused(known, first(patch, -clearance), "a clearance");
-}
-
-fn encoded(of: impl serde::Serialize) -> Vec<u8> {
-    postcard::to_stdvec(&of).expect("can be encoded")
 }

@@ -3,13 +3,14 @@
 use super::{Feed, MatrixTable};
 use crate::matrix::Certificate;
 use crate::output::{WriteError, write_atomically};
+use std::borrow::Cow;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 /// Writes the arrays `F` (n x n, float64, F[i, j] from i to j), `area` and `covered` (m²), `label`, `back`, `row_sum`, `row_error` (n each) and `limited`
-/// (pairs of row and column, from 0). `numpy.load` reads them.
+/// (pairs of row and column, from 0). `numpy.load` reads them. In labels with more than 1024 characters `…` stands for what is in the middle.
 ///
 /// # Errors
 /// When the file cannot be written, or `feed` fails.
@@ -99,21 +100,49 @@ fn floats(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
     out.write_all(&bytes)
 }
 
+/// The most characters of a label: NumPy keeps as many for each as the longest has.
+const LONGEST: usize = 1024;
+
+/// What is kept of the end of a longer one: the number of a part, which tells it from others, stands there.
+const END: usize = 64;
+
 /// NumPy's fixed-width text: four bytes a character.
 fn labels<W: Write + Seek>(zip: &mut ZipWriter<W>, table: &MatrixTable<'_>) -> io::Result<()> {
-    let width = table
-        .rows
-        .iter()
-        .map(|row| row.label.chars().count())
-        .max()
-        .unwrap_or(0)
-        .max(1);
+    let labels = || table.rows.iter().map(|row| shortened(&row.label));
+    let width = labels().map(|label| label.chars().count()).max();
+    let width = width.unwrap_or(0).max(1);
     begin(zip, "label", &format!("<U{width}"), &[table.rows.len()])?;
-    for row in table.rows {
-        let codes = row.label.chars().map(u32::from).chain(std::iter::repeat(0));
+    for label in labels() {
+        let codes = label.chars().map(u32::from).chain(std::iter::repeat(0));
         for code in codes.take(width) {
             zip.write_all(&code.to_le_bytes())?;
         }
     }
     Ok(())
+}
+
+/// A label with at most [`LONGEST`] characters.
+fn shortened(label: &str) -> Cow<'_, str> {
+    let count = label.chars().count();
+    if count <= LONGEST {
+        return label.into();
+    }
+    let beginning = label.chars().take(LONGEST - END - 1);
+    let end = label.chars().skip(count - END);
+    beginning.chain(['…']).chain(end).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_is_cut_in_the_middle_if_it_is_very_long() {
+        let long = format!("{}/17", "é".repeat(LONGEST - 3));
+        assert_eq!(shortened(&long), long);
+        let longer = format!("{}/17", "é".repeat(200_000));
+        let cut = shortened(&longer);
+        assert_eq!(cut.chars().count(), LONGEST);
+        assert!(cut.starts_with("éé") && cut.contains("é…é") && cut.ends_with("é/17"));
+    }
 }

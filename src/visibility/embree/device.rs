@@ -38,8 +38,8 @@ impl PacketWidth {
 #[derive(Debug)]
 pub struct Device {
     raw: NonNull<sys::RTCDeviceTy>,
-    /// In a box, where Embree can find it again.
-    watch: Box<Watch>,
+    /// From a box, freed when the device is gone. Embree has this pointer too, and a box that moves would claim that nobody else does.
+    watch: NonNull<Watch>,
 }
 
 // SAFETY: a device is reference-counted and thread-safe by Embree's documentation ("API functions of
@@ -77,16 +77,21 @@ impl Device {
             let reason = reason(code).into();
             VisibilityError::Embree { step, reason }
         })?;
-        let watch = Box::new(Watch::new(memory));
+        let watch = NonNull::from(Box::leak(Box::new(Watch::new(memory))));
         let device = Self { raw, watch };
-        // SAFETY: the device is valid; the box keeps the watch in place until `drop` has released the device.
-        unsafe { device.watch.register(device.raw()) };
+        // SAFETY: the device is valid; the watch is freed by `drop` alone, after the device is released, and no one has it for himself until then.
+        unsafe { Watch::register(watch, device.raw()) };
         Ok(device)
     }
 
     /// Bytes that it holds.
     pub fn used(&self) -> u64 {
-        self.watch.used()
+        self.watch().used()
+    }
+
+    fn watch(&self) -> &Watch {
+        // SAFETY: it lives as long as `self`, and nobody has other than shared access to it.
+        unsafe { self.watch.as_ref() }
     }
 
     /// The handle, valid as long as `self`.
@@ -102,13 +107,13 @@ impl Device {
     ) -> Result<T, VisibilityError> {
         // SAFETY: the handle is valid; reading the slot empties it.
         unsafe { sys::rtcGetDeviceError(self.raw()) };
-        self.watch.take_message();
+        self.watch().take_message();
         let value = calls();
         // SAFETY: as above.
         match unsafe { sys::rtcGetDeviceError(self.raw()) } {
             sys::RTCError::RTC_ERROR_NONE => Ok(value),
             code => {
-                let message = self.watch.take_message();
+                let message = self.watch().take_message();
                 let reason = message.map_or_else(
                     || reason(code).to_owned(),
                     |message| format!("{} ({message})", reason(code)),
@@ -158,8 +163,12 @@ impl Device {
 
 impl Drop for Device {
     fn drop(&mut self) {
-        // SAFETY: we own one reference, released once.
-        unsafe { sys::rtcReleaseDevice(self.raw()) }
+        // SAFETY: we own the only reference that is left, as all that is made on the device holds or borrows it and is released before; it is
+        // released once. Embree calls back no more after that, so the box that the watch came from is ours alone, and freed once.
+        unsafe {
+            sys::rtcReleaseDevice(self.raw());
+            drop(Box::from_raw(self.watch.as_ptr()));
+        }
     }
 }
 

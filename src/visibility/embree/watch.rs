@@ -2,6 +2,7 @@
 
 use embree4_sys as sys;
 use std::ffi::{CStr, c_char, c_void};
+use std::ptr::NonNull;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -35,12 +36,13 @@ impl Watch {
         self.message.lock().ok()?.take()
     }
 
-    /// Registers it with a device.
+    /// Registers one with a device.
     ///
     /// # Safety
-    /// `device` must be valid, and `self` must stay where it is until the device is gone.
-    pub unsafe fn register(&self, device: sys::RTCDevice) {
-        let this = std::ptr::from_ref(self).cast_mut().cast::<c_void>();
+    /// `device` must be valid, and `watch` must point to a watch that lives, and to which nobody has other than shared access, until the device
+    /// is gone.
+    pub unsafe fn register(watch: NonNull<Self>, device: sys::RTCDevice) {
+        let this = watch.as_ptr().cast::<c_void>();
         // SAFETY: by the caller's promise the pointer that both callbacks get is good as long as they can be called; they use
         // it for shared access only.
         unsafe {
@@ -72,7 +74,7 @@ impl Watch {
 /// Embree asks before it takes memory (`post` is false, or true after the fact) and says what it gives back. What it asks for
 /// after a refusal it gives back as well, so the count stays right.
 extern "C" fn on_memory(watch: *mut c_void, bytes: isize, _post: bool) -> bool {
-    // SAFETY: the pointer is the one that `register` gave, to a living `Watch`.
+    // SAFETY: the pointer is the one that `register` got, to a living `Watch` that is shared.
     let watch = unsafe { &*watch.cast::<Watch>() };
     watch.account(bytes as i64)
 }
