@@ -21,6 +21,7 @@ mod say;
 mod session;
 mod shell;
 mod solve;
+mod table;
 mod values;
 mod view;
 mod viewpoint;

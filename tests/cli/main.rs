@@ -3,6 +3,7 @@
 mod damaged;
 mod exporting;
 mod grids;
+mod heat;
 mod interrupted;
 mod matrices;
 mod pages;
