@@ -222,7 +222,7 @@ fn format_of(path: &Path) -> Result<Format, CliError> {
         "csv" => Ok(Format::Csv),
         "npz" => Ok(Format::Npz),
         "mtx" => Ok(Format::MatrixMarket),
-        _ => Err(CliError::Input(format!(
+        _ => Err(CliError::Usage(format!(
             "cannot write {}: found the ending `{extension}`, expected .csv, .npz or .mtx",
             path.display()
         ))),

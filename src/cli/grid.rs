@@ -98,7 +98,7 @@ impl GridFlags {
             _ => {
                 let (rows, columns) = (plane.rows, plane.columns);
                 let found = format!("a grid of {columns} x {rows} points");
-                Err(CliError::Input(format!(
+                Err(CliError::Usage(format!(
                     "{found}; expected {MOST_POINTS} at most: a larger --spacing or a --region"
                 )))
             }

@@ -92,6 +92,12 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |v| v > 0.0 && v < 1e9, "a positive number")
 }
 
+/// A field of view.
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
+    let expected = "an angle between 0 and 180 degrees";
+    number(text, |v| v > 0.0 && v < 180.0, expected)
+}
+
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |v| v >= 0.0, "a number, 0 or more")
 }

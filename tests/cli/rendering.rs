@@ -73,7 +73,7 @@ fn a_plan_is_drawn_with_another_way_up() {
 fn a_view_that_cannot_be_is_refused() {
     let (_folder, solved) = draft("geometry");
     let refused = |arguments: &[&str], words: &[&str]| {
-        radiosity(&[&["render", text(&solved)], arguments].concat()).assert_refused(3, words);
+        radiosity(&[&["render", text(&solved)], arguments].concat()).assert_refused(2, words);
     };
     refused(&["--camera", "back"], &["`back`", "front"]);
     refused(&["--fov", "180"], &["180"]);
