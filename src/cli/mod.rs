@@ -16,6 +16,7 @@ mod probe;
 mod profile;
 mod progress;
 mod render;
+mod results;
 mod resume;
 mod say;
 mod session;

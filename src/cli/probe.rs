@@ -2,7 +2,7 @@
 
 use super::error::Code;
 use super::grid::GridFlags;
-use super::solve::SOLUTION;
+use super::results::read_solution;
 use super::table::{column, open, unreadable};
 use super::{CliError, say};
 use crate::output::write_atomically;
@@ -25,7 +25,7 @@ const LIGHT: [&str; 6] = [
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The folder that `solve` wrote
+    /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
     /// A table with the columns x,y,z,nx,ny,nz (scene units); other columns are kept, but for the light of an earlier probe
     #[arg(required_unless_present = "grid", conflicts_with = "grid")]
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
-    let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
+    let solution = read_solution(&arguments.solution)?;
     if let Some(plane) = &arguments.grid.grid {
         let output = arguments.output.as_deref();
         arguments.grid.measure(&solution, plane, output)?;

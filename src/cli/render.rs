@@ -3,17 +3,16 @@
 use super::CliError;
 use super::error::Code;
 use super::pictures::draw;
-use super::solve::SOLUTION;
+use super::results::{folder_of, picture_folder, read_solution};
 use super::viewpoint::Viewpoint;
 use crate::render::RenderOptions;
-use crate::solution::Solution;
 use crate::visibility::EngineChoice;
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The folder that `solve` wrote
+    /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
     #[command(flatten)]
     viewpoint: Viewpoint,
@@ -26,24 +25,19 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
-    let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
+    let solution = read_solution(&arguments.solution)?;
     let cameras = arguments.viewpoint.of(&solution.cameras)?;
     let lit = solution.lit_mesh();
-    let folder = arguments.output.as_ref().unwrap_or(&arguments.solution);
-    let several = cameras.len() > 1;
+    let beside = || folder_of(&arguments.solution);
+    let folder = arguments.output.clone().unwrap_or_else(beside);
     for (number, camera) in cameras.iter().enumerate() {
-        let into = if several && number > 0 {
-            folder.join(&camera.name)
-        } else {
-            folder.clone()
-        };
         draw(
             &lit,
             camera,
             &RenderOptions::standard(),
             arguments.engine,
             0,
-            &into,
+            &picture_folder(&folder, number, camera),
         )?;
     }
     Ok(Code::Success)

@@ -5,9 +5,10 @@ use super::error::Code;
 use super::flags::SolveFlags;
 use super::memory::hold_less;
 use super::progress::catch_interrupts;
-use super::session::{CHECKPOINT, Session};
-use super::solve::{How, SOLUTION, engine_of, prepare, warn, warn_of_another_engine};
-use crate::scene::Scene;
+use super::results::{CHECKPOINT, SOLUTION, inputs, spare};
+use super::session::Session;
+use super::solve::{How, engine_of, prepare, warn, warn_of_another_engine};
+use crate::scene::NamedScene;
 use crate::solution::Solution;
 use crate::{Run, Settings, Target};
 use clap::Args;
@@ -44,14 +45,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let watching = arguments.how.begin()?;
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     hold_less(solution.mesh.patches.len());
-    let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
+    let scene = arguments.scene.as_deref().map(NamedScene::load_lit);
+    let scene = scene.transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
+    let known = solution.report.scene_file.iter();
+    let mut files: Vec<PathBuf> = known.flat_map(|file| inputs(file, file)).collect();
+    if let (Some(file), Some(scene)) = (&arguments.scene, &scene) {
+        files.extend(inputs(file, &scene.names.file));
+    }
+    spare(&files, output, &arguments.how, &solution.cameras)?;
     prepare(output)?;
     catch_interrupts();
     let before = solution.report.clone();
     let settings = settings(&solution, arguments)?;
     let mut run = Run::resume(solution, settings)?;
-    if let Some(scene) = scene {
+    if let Some(NamedScene { scene, .. }) = scene {
         warn(&scene);
         run.relight(scene)?;
         let file = arguments.scene.as_deref();

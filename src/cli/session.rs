@@ -4,8 +4,9 @@ use super::CliError;
 use super::error::Code;
 use super::profile::profile;
 use super::progress::{Look, Watch, is_due, is_interrupted};
+use super::results::{CHECKPOINT, SOLUTION};
 use super::say::{self, is_quiet};
-use super::solve::{How, SOLUTION, summary, write_beside};
+use super::solve::{How, summary, write_beside};
 use crate::Run;
 use crate::output::write_atomically;
 use crate::solution::Solution;
@@ -15,9 +16,6 @@ use std::time::{Duration, Instant};
 
 #[cfg(feature = "viewer")]
 pub(super) use super::window::Watching;
-
-/// The state of a run that has not ended; `radiosity resume` reads it.
-pub(super) const CHECKPOINT: &str = "checkpoint.rad";
 
 /// Who looks on sees no more than this often what has become of the light.
 const FRAME: Duration = Duration::from_millis(100);

@@ -3,10 +3,11 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
-use super::memory::{load_scene, peak_memory};
+use super::memory::{load_with_file, peak_memory};
 use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
 use super::progress::{Look, catch_interrupts};
+use super::results::{PAGE, REPORT, SOLUTION, inputs, mesh_file, picture_folder, spare};
 use super::say;
 use super::session::{Session, Watching};
 use super::values::{duration, threads};
@@ -24,9 +25,6 @@ use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// The solution file that the other commands read.
-pub(super) const SOLUTION: &str = "solution.rad";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -102,9 +100,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
-    let scene = load_scene(file)?;
+    let (scene, geometry) = load_with_file(file)?;
     let load = started.elapsed().as_secs_f64();
     warn(&scene);
+    let files = inputs(file, &geometry);
+    spare(&files, &arguments.output, &arguments.how, &scene.cameras)?;
     prepare(&arguments.output)?;
     catch_interrupts();
     let flags = &arguments.flags;
@@ -206,7 +206,7 @@ pub(super) fn write_beside(
     solution.report.peak_memory = peak_memory();
     let report =
         serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
-    write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
+    write_atomically(&folder.join(REPORT), |out| out.write_all(&report))?;
     if !how.no_html {
         write_page(solution, folder, how, history)?;
     }
@@ -222,26 +222,19 @@ fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Re
         efficacy: WHITE_EFFICACY,
     };
     for format in &how.formats.0 {
-        let name = format!("solution.{}", format.extension());
-        exporter.write(*format, &folder.join(name))?;
+        exporter.write(*format, &folder.join(mesh_file(*format)))?;
     }
     if how.no_pictures {
         return Ok(());
     }
     for (number, camera) in solution.cameras.iter().enumerate() {
-        // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
-        let into = if number == 0 {
-            folder.to_path_buf()
-        } else {
-            folder.join(&camera.name)
-        };
         draw(
             lit,
             camera,
             &RenderOptions::standard(),
             how.engine.unwrap_or_default(),
             how.threads,
-            &into,
+            &picture_folder(folder, number, camera),
         )?;
     }
     Ok(())
@@ -264,16 +257,16 @@ fn write_page(
             pictures.push((format!("{camera}: {what}"), png));
         }
     }
-    let mut files = vec![SOLUTION.to_owned(), "report.json".to_owned()];
+    let mut files = vec![SOLUTION.to_owned(), REPORT.to_owned()];
     let meshes = how.formats.0.iter();
-    files.extend(meshes.map(|format| format!("solution.{}", format.extension())));
+    files.extend(meshes.map(|format| mesh_file(*format)));
     let page = Page {
         report: &solution.report,
         history,
         pictures: &pictures,
         files: &files,
     };
-    Ok(write_html(&folder.join("report.html"), &page)?)
+    Ok(write_html(&folder.join(PAGE), &page)?)
 }
 
 /// The paper's Table 1 for this solve, and what the table leaves out.
