@@ -199,17 +199,24 @@ pub(super) fn write_beside(
     how: &How,
     history: &History,
 ) -> Result<(), CliError> {
+    // First of all, so that it is there whatever may fail below; and once more when the time that writing took is known.
+    write_report(&solution.report, folder)?;
     if !how.formats.0.is_empty() || !how.no_pictures {
         write_lit(solution, &solution.lit_mesh(), folder, how)?;
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
     solution.report.peak_memory = peak_memory();
-    let report =
-        serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
-    write_atomically(&folder.join(REPORT), |out| out.write_all(&report))?;
+    write_report(&solution.report, folder)?;
     if !how.no_html {
         write_page(solution, folder, how, history)?;
     }
+    Ok(())
+}
+
+/// `report.json`.
+fn write_report(report: &Report, folder: &Path) -> Result<(), CliError> {
+    let text = serde_json::to_vec_pretty(report).map_err(|e| CliError::System(e.to_string()))?;
+    write_atomically(&folder.join(REPORT), |out| out.write_all(&text))?;
     Ok(())
 }
 

@@ -196,3 +196,15 @@ fn a_picture_never_replaces_a_texture() {
     radiosity(&[&solve[..], &["--no-pictures"]].concat()).assert_success();
     assert_eq!(fs::read(&texture).expect("is still there"), png);
 }
+
+#[test]
+fn the_report_is_there_when_a_picture_cannot_be_written() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("shaded.exr")).expect("can be made");
+    let geometry = scene("geometry");
+    let solve = ["solve", text(&geometry), "-o", text(folder.path())];
+    let more = ["--max-shots", "1", "--formats", "none"];
+    radiosity(&[&solve[..], &more].concat()).assert_refused(1, &["shaded.exr"]);
+    let kept = ["report.json", "shaded.exr", "solution.rad"];
+    assert_eq!(names(folder.path()), kept);
+}

@@ -262,6 +262,21 @@ fn cameras_look_along_their_negative_z() {
     assert_eq!(warnings, ["it.gltf: 1 orthographic cameras left out"]);
 }
 
+#[test]
+fn cameras_whose_names_no_folder_of_pictures_can_have_are_numbered() {
+    let mut document = square();
+    let names = ["report.json", &"c".repeat(300), "fine", "fine"];
+    document["scenes"][0]["nodes"] = json!([0, 1, 2, 3, 4]);
+    document["cameras"] = json!([
+        { "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } },
+    ]);
+    let nodes = document["nodes"].as_array_mut().expect("is a list");
+    nodes.extend(names.map(|name| json!({ "name": name, "camera": 0, "translation": [1, 2, 3] })));
+    let (scene, _) = load(&document);
+    let given: Vec<&str> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(given, ["camera 1", "camera 2", "fine", "fine 2"]);
+}
+
 /// A square with a light of 895 cd above.
 pub fn with_light(kind: Value) -> Value {
     let mut document = square();
