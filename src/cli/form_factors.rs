@@ -42,8 +42,8 @@ pub(super) struct Arguments {
     /// Solve for radiosity and net flux with the materials' reflectance and emission, into FILE.radiosity.csv
     #[arg(long)]
     solve: bool,
-    /// The same for heat: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
-    #[arg(long, value_name = "FILE")]
+    /// The same for heat, in place of light: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
+    #[arg(long, value_name = "FILE", conflicts_with = "solve")]
     temperatures: Option<PathBuf>,
     /// Leave entries below this out of an .mtx; says what share of the flux they carry
     #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = not_negative)]

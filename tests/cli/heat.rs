@@ -84,6 +84,15 @@ fn a_table_without_the_columns_is_told_which_they_are() {
 }
 
 #[test]
+fn light_and_heat_are_not_solved_at_once() {
+    let folder = folder();
+    let output = folder.path().join("F.csv");
+    let both = ["--solve", "--temperatures", "T.csv"];
+    let run = form_factors(&cube(&folder), &output, &both);
+    run.assert_refused(2, &["--solve", "--temperatures"]);
+}
+
+#[test]
 fn a_column_that_is_not_read_is_named() {
     let run = with_table(
         "label,temperature_K,emisivity\nback,5,1\nfront,3,1\nfloor,3,1\ntop,3,1\nleft,3,1\nright,3,1\n",
