@@ -6,8 +6,9 @@ use super::flags::SolveFlags;
 use super::memory::hold_less;
 use super::progress::catch_interrupts;
 use super::results::{CHECKPOINT, SOLUTION, inputs, spare};
+use super::say;
 use super::session::Session;
-use super::solve::{How, engine_of, prepare, warn, warn_of_another_engine};
+use super::solve::{How, engine_of, prepare, warn_of_another_engine};
 use crate::scene::NamedScene;
 use crate::solution::Solution;
 use crate::{Run, Settings, Target};
@@ -59,8 +60,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let before = solution.report.clone();
     let settings = settings(&solution, arguments)?;
     let mut run = Run::resume(solution, settings)?;
+    let known_warnings = run.solution().report.warnings.len();
     if let Some(NamedScene { scene, .. }) = scene {
-        warn(&scene);
+        say::warnings(&scene.warnings);
         run.relight(scene)?;
         let file = arguments.scene.as_deref();
         run.report_mut().scene_file = file.and_then(|file| absolute(file).ok());
@@ -74,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         output,
         how: &arguments.how,
         started,
-        known_warnings: before.warnings.len(),
+        known_warnings,
     };
     session.complete(run, watching)
 }

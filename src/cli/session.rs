@@ -10,7 +10,7 @@ use super::solve::{How, summary, write_beside};
 use crate::Run;
 use crate::output::write_atomically;
 use crate::solution::Solution;
-use crate::solver::{MeshingEnd, StopReason};
+use crate::solver::StopReason;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -144,25 +144,6 @@ impl Session<'_> {
         let report = &solution.report;
         let known = self.known_warnings.min(report.warnings.len());
         say::warnings(&report.warnings[known..]);
-        if let Some(end) = report.meshing_ended {
-            let limit = match end {
-                MeshingEnd::MaxElements => "--max-elements",
-                MeshingEnd::MemoryLimit => "--memory-limit",
-            };
-            say::warning(&format!(
-                "{limit} ended the refinement after {} shots, at {} elements",
-                report.meshing_shots, report.elements
-            ));
-        }
-        let missed = report.target.as_ref().filter(|t| !t.reached);
-        if let (Some(target), true) = (missed, report.stop_reason != StopReason::NoEmitter) {
-            let plural = if target.rounds == 1 { "" } else { "s" };
-            say::warning(&format!(
-                "the error of {}% was not reached in {} solve{plural}",
-                100.0 * target.n_rms,
-                target.rounds
-            ));
-        }
     }
 }
 

@@ -16,7 +16,6 @@ use crate::output::{
 };
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::{RenderOptions, Tone};
-use crate::scene::Scene;
 use crate::solution::{LitMesh, Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
@@ -102,7 +101,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
     let (scene, geometry) = load_with_file(file)?;
     let load = started.elapsed().as_secs_f64();
-    warn(&scene);
+    say::warnings(&scene.warnings);
     let files = inputs(file, &geometry);
     spare(&files, &arguments.output, &arguments.how, &scene.cameras)?;
     prepare(&arguments.output)?;
@@ -165,13 +164,6 @@ pub(super) fn warn_of_another_engine(then: &Report, now: &Report) {
         name(then),
         name(now)
     ));
-}
-
-pub(super) fn warn(scene: &Scene) {
-    say::warnings(&scene.warnings);
-    if !scene.materials.iter().any(|m| m.emits()) {
-        say::warning("no surface emits light; everything will be black");
-    }
 }
 
 /// Bytes that a folder must have room for before a solve begins.

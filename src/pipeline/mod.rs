@@ -4,6 +4,7 @@ mod measure;
 mod report;
 mod run;
 mod target;
+mod warnings;
 
 pub use measure::irradiance_at;
 pub use run::Run;

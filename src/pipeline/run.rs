@@ -1,6 +1,7 @@
 //! A solve that can be left and taken up again.
 
-use super::report::{blank, take_in, warn_at_end};
+use super::report::{blank, take_in};
+use super::warnings::{forget_the_end, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -67,6 +68,7 @@ impl Run {
             return Err(SolveError::NotKept);
         };
         let report = &mut solution.report;
+        forget_the_end(report);
         let mut options = settings.options;
         let known = report.target.take();
         if let Some(target) = &settings.target {

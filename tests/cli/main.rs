@@ -1,6 +1,7 @@
 //! The command: what it writes, what it says, and the code with which it ends.
 
 mod damaged;
+mod ended;
 mod exporting;
 mod grids;
 mod heat;
