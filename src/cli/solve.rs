@@ -122,8 +122,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let report = run.report_mut();
     report.seconds.load = load;
     report.scene_file = std::path::absolute(file).ok();
-    if let Some(model) = model.filter(|model| model.engine != report.engine) {
-        warn_of_another_engine(&model, report);
+    if let Some(model) = &model {
+        warn_of_the_model(model, report);
     }
     let session = Session {
         output: &arguments.output,
@@ -149,6 +149,29 @@ fn read_report(path: &Path) -> Result<Report, CliError> {
 pub(super) fn engine_of(report: &Report) -> Result<EngineChoice, CliError> {
     let name = report.engine.name.replace('_', "-");
     name.parse().map_err(|e| CliError::Input(format!("{e}")))
+}
+
+/// Says why this solve may not be that of its report.
+fn warn_of_the_model(model: &Report, now: &Report) {
+    let ended_by = match model.stop_reason {
+        StopReason::TimeLimit => Some("the time limit"),
+        StopReason::Interrupted => Some("an interruption"),
+        _ => None,
+    };
+    if let Some(what) = ended_by {
+        say::warning(&format!(
+            "the solve of the report was ended by {what}: this one may go further"
+        ));
+    }
+    if !model.resumed_with.is_empty() {
+        say::warning(&format!(
+            "the solve of the report was taken up again with {}: this one begins with what it ended with, and results will differ",
+            model.resumed_with.join(", ")
+        ));
+    }
+    if model.engine != now.engine {
+        warn_of_another_engine(model, now);
+    }
 }
 
 /// The bits depend on the engine's version and instruction set.

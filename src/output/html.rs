@@ -148,6 +148,7 @@ impl Page<'_> {
                     engine.packet_width
                 ),
             ),
+            ("taken up again with", report.resumed_with.join(", ")),
             ("files", self.files.join(", ")),
         ];
         let rows = rows.iter().filter(|(_, value)| !value.is_empty());

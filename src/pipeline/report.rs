@@ -46,6 +46,7 @@ pub(super) fn blank(
         audit: None,
         target: None,
         options,
+        resumed_with: Vec::new(),
         warnings: warnings(scene, mesh),
     }
 }

@@ -1,7 +1,7 @@
 //! A solve that can be left and taken up again.
 
 use super::report::{blank, take_in};
-use super::warnings::{forget_the_end, warn_at_end};
+use super::warnings::{counted, forget_the_end, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -81,6 +81,7 @@ impl Run {
         }
         if differs(&options, &report.options) {
             continuation.course.reopen();
+            note(report, "other options");
         }
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
@@ -95,6 +96,9 @@ impl Run {
             options,
             threads,
         );
+        if report.engine != now.engine {
+            note(report, "another engine");
+        }
         (report.engine, report.threads) = (now.engine, now.threads);
         report.options = now.options;
         report.seconds.build += started.elapsed().as_secs_f64();
@@ -183,6 +187,9 @@ impl Run {
             .all(|p| p.exitance == Spectrum::ZERO)
         {
             solution.light = Light::new(&solution.mesh);
+        }
+        if known.scene.materials != scene.materials {
+            note(&mut solution.report, "other emitters");
         }
         known.scene = scene;
         known.course.reopen();
@@ -306,6 +313,14 @@ fn check_emitters(scene: &Scene, mesh: &Mesh) -> Result<(), SolveError> {
         lost => Err(SolveError::OtherScene(format!(
             "{lost} of them lie in the plane of other surfaces and were left out when nothing shone there"
         ))),
+    }
+}
+
+/// Notes what a solve goes on with, if it is not what it began with.
+fn note(report: &mut Report, with: &str) {
+    if report.shots > 0 {
+        let after = counted(report.shots, "shot");
+        report.resumed_with.push(format!("{with} after {after}"));
     }
 }
 

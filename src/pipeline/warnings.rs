@@ -86,7 +86,7 @@ fn target_missed(report: &Report) -> Option<String> {
     })
 }
 
-fn counted(count: u64, of: &str) -> String {
+pub(super) fn counted(count: u64, of: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {of}{plural}")
 }

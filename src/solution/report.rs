@@ -57,6 +57,10 @@ pub struct Report {
     pub target: Option<TargetReport>,
     /// Every option in force.
     pub options: Options,
+    /// What changed when the solve was taken up again, and after how many shots; if anything did, the options alone do not give this
+    /// solution.
+    #[serde(default)]
+    pub resumed_with: Vec<String>,
     /// What was suspicious in the input.
     pub warnings: Vec<String>,
 }

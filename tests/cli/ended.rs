@@ -6,15 +6,19 @@ use std::path::Path;
 
 /// Runs `solve` or `resume` without pictures, and gives the warnings of its report too.
 fn ended(command: &str, of: &Path, output: &Path, more: &[&str]) -> (Run, Vec<String>) {
+    let (run, report) = reported(command, of, output, more);
+    let warnings = report["warnings"].as_array().expect("is a list");
+    let warnings = warnings.iter().filter_map(|w| w.as_str());
+    (run, warnings.map(str::to_owned).collect())
+}
+
+/// The same, with its report.
+fn reported(command: &str, of: &Path, output: &Path, more: &[&str]) -> (Run, serde_json::Value) {
     let begin = [command, text(of), "-o", text(output), "--no-pictures"];
     let run = radiosity(&[&begin[..], &["--formats", "none"], more].concat());
     run.assert_success();
     let json = fs::read(output.join("report.json")).expect("was written");
-    let report: serde_json::Value = serde_json::from_slice(&json).expect("is JSON");
-    let warnings = report["warnings"].as_array().expect("is a list");
-    let warnings = warnings.iter().filter_map(|w| w.as_str());
-    let warnings = warnings.map(str::to_owned).collect();
-    (run, warnings)
+    (run, serde_json::from_slice(&json).expect("is JSON"))
 }
 
 #[test]
@@ -76,4 +80,39 @@ fn what_ended_a_session_before_is_not_said_of_the_next() {
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     let (run, warnings) = ended("resume", &second, &second, &["--max-shots", "100000"]);
     assert_eq!((run.err.as_str(), warnings), ("", Vec::new()));
+}
+
+#[test]
+fn a_report_that_does_not_give_its_solve_again_says_so() {
+    let folder = folder();
+    let [first, second, third] = ["1", "2", "3"].map(|name| folder.path().join(name));
+    let geometry = scene("geometry");
+    let draft = ["--preset", "draft"];
+    let (_, plain) = reported("solve", &geometry, &first, &draft);
+    assert_eq!(plain["resumed_with"], serde_json::json!([]));
+    let shots = plain["shots"].as_u64().expect("is a count");
+    let stricter = ["--tolerance", "0.001"];
+    let (_, report) = reported("resume", &first, &second, &stricter);
+    let with = format!("other options after {shots} shots");
+    assert_eq!(report["resumed_with"], serde_json::json!([with]));
+    let repeated = |of: &Path| {
+        let from = of.join("report.json");
+        let run = [
+            "solve",
+            "--from",
+            text(&from),
+            "-o",
+            text(&third),
+            "--no-pictures",
+        ];
+        let run = radiosity(&run);
+        run.assert_success();
+        run.err
+    };
+    let warning = format!("taken up again with {with}");
+    assert!(repeated(&second).contains(&warning));
+    assert_eq!(repeated(&first), "");
+    let short = ["--preset", "draft", "--time-limit", "0.000001"];
+    reported("solve", &geometry, &first, &short);
+    assert!(repeated(&first).contains("was ended by the time limit"));
 }
