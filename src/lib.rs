@@ -32,6 +32,7 @@
 //! `tests/tidy` and `tests/solve` hold them.
 #![deny(missing_docs)]
 
+mod bytes;
 pub mod cli;
 pub mod codec;
 pub mod form_factor;

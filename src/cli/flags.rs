@@ -97,7 +97,7 @@ pub(super) struct SolveFlags {
     /// Refine no further when there are this many elements
     #[arg(long, value_name = "N", help_heading = MESHING)]
     max_elements: Option<usize>,
-    /// Refine no further when the process would need more memory than this (bytes, or with MB, GB, MiB, GiB)
+    /// Refine no further when the process would need more memory than this (bytes, or with a unit from KB to TB or KiB to TiB); the largest picture counts
     #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = MESHING)]
     memory_limit: Option<u64>,
 }

@@ -9,6 +9,7 @@ use super::say::{self, is_quiet};
 use super::solve::{How, summary, write_beside};
 use crate::Run;
 use crate::output::write_atomically;
+use crate::render::View;
 use crate::solution::Solution;
 use crate::solver::StopReason;
 use std::path::Path;
@@ -66,6 +67,7 @@ impl Session<'_> {
 
     /// The same, before an audience. What it sees does not change what is computed.
     pub fn finish(&self, mut run: Run, audience: Option<&dyn Audience>) -> Result<Code, CliError> {
+        run.reserve(self.pictures(run.solution()))?;
         let look = self.how.look();
         let mut bar = Watch::new(run.solution().report.options.tolerance, look);
         if let Some(interval) = self.how.checkpoint {
@@ -122,6 +124,12 @@ impl Session<'_> {
             true => Code::Interrupted,
             false => Code::Success,
         })
+    }
+
+    /// Memory for the largest of the pictures, bytes.
+    fn pictures(&self, of: &Solution) -> u64 {
+        let drawn = of.cameras.iter().filter(|_| !self.how.no_pictures);
+        drawn.map(View::bytes_for).max().unwrap_or(0)
     }
 
     /// The end for a program.

@@ -55,6 +55,8 @@ pub(super) fn png(text: &str) -> Result<PathBuf, String> {
 /// Bytes, or a number with a unit.
 pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let units = [
+        ("TiB", 1099511627776.0),
+        ("TB", 1e12),
         ("KiB", 1024.0),
         ("MiB", 1048576.0),
         ("GiB", 1073741824.0),
@@ -128,6 +130,8 @@ mod tests {
         assert_eq!(seconds("2 h"), Ok(7200.0));
         assert_eq!(bytes("2GiB"), Ok(2 << 30));
         assert_eq!(bytes("500mb"), Ok(500_000_000));
+        assert_eq!(bytes("1.5TB"), Ok(1_500_000_000_000));
+        assert_eq!(bytes("1TiB"), Ok(1 << 40));
         assert_eq!(bytes("4096"), Ok(4096));
         for wrong in ["", "s", "-1s", "0", "1d", "inf", "1 e", "é"] {
             assert!(duration(wrong).is_err() && bytes(wrong).is_err(), "{wrong}");

@@ -27,6 +27,8 @@ pub struct Run {
     time_limit: Option<Duration>,
     /// What counts against the time limit.
     spent: Duration,
+    /// Memory that is not for the solve, bytes.
+    reserved: u64,
 }
 
 impl Run {
@@ -42,7 +44,7 @@ impl Run {
         let threads = pool.current_num_threads();
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
         let (visibility, engine) = engine(&scene, &mesh, (settings.engine, threads), &options)?;
-        check_memory(&mesh, visibility.as_ref(), &options)?;
+        check_memory(&mesh, visibility.as_ref(), &options, 0)?;
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
         report.target = target;
@@ -53,6 +55,7 @@ impl Run {
             pool,
             time_limit,
             spent: Duration::ZERO,
+            reserved: 0,
         };
         run.begin(scene, mesh, report);
         let seconds = &mut run.report_mut().seconds;
@@ -109,7 +112,22 @@ impl Run {
             pool,
             time_limit,
             spent: Duration::ZERO,
+            reserved: 0,
         })
+    }
+
+    /// Keeps so many bytes of the memory limit for pictures.
+    ///
+    /// # Errors
+    /// When there is not room for them and the coarsest mesh. One that has been refined stays as it is.
+    pub fn reserve(&mut self, pictures: u64) -> Result<(), SolveError> {
+        let solution = self.solution();
+        let options = &solution.report.options;
+        if solution.report.shots == 0 {
+            check_memory(&solution.mesh, self.visibility.as_ref(), options, pictures)?;
+        }
+        self.reserved = pictures;
+        Ok(())
     }
 
     /// Goes on until there is a reason to stop.
@@ -225,6 +243,8 @@ impl Run {
         let mut report = solution.report;
         let mut options = report.options.clone();
         options.time_limit = self.time_limit;
+        let for_the_solve = |limit: u64| limit.saturating_sub(self.reserved);
+        options.memory_limit = options.memory_limit.map(for_the_solve);
         let state = (solution.mesh, solution.light, course);
         let clocked = Clocked::new(self.visibility.as_ref());
         let spent = self.spent;
@@ -287,18 +307,20 @@ fn check_memory(
     mesh: &Mesh,
     visibility: &dyn Visibility,
     options: &Options,
+    pictures: u64,
 ) -> Result<(), SolveError> {
     let Some(limit) = options.memory_limit else {
         return Ok(());
     };
-    let needed = memory_for(mesh, options, visibility.info().bytes);
+    let needed = memory_for(mesh, options, visibility.info().bytes) + pictures;
     if needed <= limit {
         return Ok(());
     }
     Err(SolveError::TooLarge {
         elements: mesh.leaves().count(),
-        needed: needed >> 20,
-        limit: limit >> 20,
+        pictures,
+        needed,
+        limit,
     })
 }
 

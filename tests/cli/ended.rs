@@ -116,3 +116,32 @@ fn a_report_that_does_not_give_its_solve_again_says_so() {
     reported("solve", &geometry, &first, &short);
     assert!(repeated(&first).contains("was ended by the time limit"));
 }
+
+#[test]
+fn the_memory_limit_holds_for_the_largest_picture_too() {
+    let folder = folder();
+    let floor = super::floor(&folder);
+    let geometry = floor.file_name().and_then(|name| name.to_str());
+    let toml = format!(
+        "geometry = \"{}\"\n[[camera]]\nname = 'wide'\neye = [0, 5, 0]\nlook_at = [0.1, 0, 0]\nwidth = 16384\nheight = 16384\n",
+        geometry.expect("has a name")
+    );
+    fs::write(folder.path().join("scene.toml"), toml).expect("can be written");
+    let output = folder.path().join("out");
+    let limited = [
+        "solve",
+        text(folder.path()),
+        "-o",
+        text(&output),
+        "--memory-limit",
+        "100MB",
+    ];
+    let run = radiosity(&limited);
+    let words = [
+        "a picture of 24.7 GB",
+        "100 MB may be used",
+        "--memory-limit",
+    ];
+    run.assert_refused(1, &words);
+    radiosity(&[&limited[..], &["--no-pictures"]].concat()).assert_success();
+}

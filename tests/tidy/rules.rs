@@ -60,14 +60,15 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 17] = [
+const IMPORTS: [(&str, &[&str]); 18] = [
+    ("bytes", &[]),
     ("codec", &[]),
     ("geometry", &[]),
     ("radiometry", &[]),
     ("simd", &[]),
     ("threads", &[]),
     ("scene", &["codec", "geometry", "radiometry"]),
-    ("visibility", &["simd"]),
+    ("visibility", &["bytes", "simd"]),
     (
         "form_factor",
         &["geometry", "radiometry", "simd", "visibility"],
@@ -91,6 +92,7 @@ const IMPORTS: [(&str, &[&str]); 17] = [
     (
         "pipeline",
         &[
+            "bytes",
             "radiometry",
             "scene",
             "threads",
