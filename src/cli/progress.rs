@@ -126,7 +126,8 @@ impl Watch {
     /// About how much of the time has passed. Unshot power falls geometrically, so its logarithm tells how far there is to go;
     /// gathering takes about as long as the shots did.
     fn done(&self, now: &Progress, unshot: f64) -> f64 {
-        let shot = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0);
+        // The logarithm of 1 makes a zero that is negative.
+        let shot = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0) + 0.0;
         match now.phase {
             Phase::Shooting | Phase::Refining => 0.6 * shot,
             Phase::Gathering { done, of } => 0.6 + 0.35 * f64::from(done) / f64::from(of.max(1)),
