@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     solution: PathBuf,
     #[command(flatten)]
     viewpoint: Viewpoint,
-    /// Folder for the pictures; the solution's own if this is left out
+    /// Folder for the pictures; the solution's own if this is left out, where they replace those that are there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Who traces the rays: auto, embree, obvhs or brute-force
