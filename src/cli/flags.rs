@@ -1,7 +1,9 @@
 //! Every option of a solve as a flag, over a preset.
 
 use super::CliError;
-use super::values::{bytes, duration, error, fraction, named, not_negative, points, positive};
+use super::values::{
+    bytes, duration, error, fraction, index, named, not_negative, points, positive,
+};
 use crate::Target;
 use crate::solver::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 use clap::Args;
@@ -23,7 +25,7 @@ pub(super) struct SolveFlags {
     #[arg(long = "eps-r", value_name = "RELATIVE", value_parser = positive, help_heading = MESHING)]
     epsilon_r: Option<f64>,
     /// ε_v: … while visibility indices at its corners, middles of sides and centre differ by this much
-    #[arg(long = "eps-v", value_name = "0..1", value_parser = positive, help_heading = MESHING)]
+    #[arg(long = "eps-v", value_name = "0..1", value_parser = index, help_heading = MESHING)]
     epsilon_v: Option<f64>,
     /// Ask for visibility where a shot, unoccluded, would give more than this
     #[arg(long = "significance", value_name = "RELATIVE", value_parser = positive, help_heading = MESHING)]

@@ -5,7 +5,7 @@ use super::error::Code;
 use super::heat::{self, write_radiosity};
 use super::progress::leave_nothing_on_interrupt;
 use super::say;
-use super::values::{named, not_negative, positive, threads};
+use super::values::{cut_off, named, positive, threads};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
     Dropped, MatrixTable, Sink, check_writable, remove_abandoned, write_atomically,
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with = "solve")]
     temperatures: Option<PathBuf>,
     /// Leave entries below this out of an .mtx; says what share of the flux they carry
-    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = not_negative)]
+    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = cut_off)]
     cut_off: f64,
     /// Who traces rays where there is too much between two surfaces: auto, embree, obvhs or brute-force
     #[arg(long, default_value = "auto", value_name = "ENGINE")]
@@ -95,6 +95,12 @@ struct Report<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
+    if arguments.cut_off > 0.0 && format != Format::MatrixMarket {
+        return Err(CliError::Usage(format!(
+            "--cut-off is for a sparse matrix (.mtx); {} has all entries",
+            arguments.output.display()
+        )));
+    }
     leave_nothing_on_interrupt();
     check_writable(&arguments.output)?;
     let folder = arguments.output.parent().filter(|it| *it != Path::new(""));

@@ -10,13 +10,16 @@ pub(super) fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|e| e.to_string())
 }
 
-/// A fraction, or a percentage with its sign.
+/// A fraction, or a percentage with its sign. A number of 1 or more without it is most often a forgotten one.
 pub(super) fn error(text: &str) -> Result<f64, String> {
     let expected = "an error such as 1% or 0.01";
     let allowed = |x: f64| x > 0.0;
-    match text.strip_suffix('%') {
-        Some(percent) => number(percent.trim_end(), allowed, expected).map(|x| x / 100.0),
-        None => number(text, allowed, expected),
+    if let Some(percent) = text.strip_suffix('%') {
+        return number(percent.trim_end(), allowed, expected).map(|x| x / 100.0);
+    }
+    match number(text, allowed, expected)? {
+        fraction if fraction < 1.0 => Ok(fraction),
+        _ => Err(format!("expected {expected}; did you mean {text}%?")),
     }
 }
 
@@ -104,6 +107,18 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |v| v >= 0.0, "a number, 0 or more")
 }
 
+/// A difference of visibility indices that is one.
+pub(super) fn index(text: &str) -> Result<f64, String> {
+    let expected = "a number above 0, up to 1";
+    number(text, |v| v > 0.0 && v <= 1.0, expected)
+}
+
+/// Below which form factors are left out. None is above 1.
+pub(super) fn cut_off(text: &str) -> Result<f64, String> {
+    let expected = "a number from 0 to less than 1";
+    number(text, |v| (0.0..1.0).contains(&v), expected)
+}
+
 pub(super) fn fraction(text: &str) -> Result<f64, String> {
     number(text, |v| (0.0..=1.0).contains(&v), "a number from 0 to 1")
 }
@@ -119,6 +134,18 @@ mod tests {
         for wrong in ["1000001", "18446744073709551616", "-1", "1e3"] {
             let bound = "expected a number of points from 0 to 1000000";
             assert_eq!(points(wrong), Err(bound.into()), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn an_error_of_one_or_more_needs_its_sign() {
+        assert_eq!(error("1%"), Ok(0.01));
+        assert_eq!(error("0.5"), Ok(0.5));
+        assert_eq!(error("150 %"), Ok(1.5));
+        let refused = error("1").expect_err("is 100 %");
+        assert!(refused.ends_with("did you mean 1%?"), "{refused}");
+        for wrong in ["0", "0%", "-1%", "%", "inf"] {
+            assert!(error(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -198,6 +198,8 @@ fn bad_input_is_refused_with_its_reason() {
         ["--by", "colour"],
         ["--enforce", "peace"],
         ["--cut-off", "inf"],
+        ["--cut-off", "2"],
+        ["--cut-off", "0.1"],
     ] {
         assert_eq!(
             form_factors(&cube, &folder.path().join("F.csv"), &flags).code,
