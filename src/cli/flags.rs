@@ -84,7 +84,7 @@ pub(super) struct SolveFlags {
     /// After the last shot, light every vertex of the finished mesh once more by every patch
     #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
     regather: Option<bool>,
-    /// Points at which the error is estimated at the end; 0 for no estimate
+    /// Points at which the error is estimated at the end; 0 for no estimate. With --target-error 256 at least
     #[arg(long, value_name = "N", value_parser = points, help_heading = PROGRESS)]
     audit_points: Option<usize>,
     /// With more patches than this, all shoot at once as clusters instead of one after the other
@@ -128,7 +128,17 @@ impl SolveFlags {
     /// The error to be reached, if one is named.
     pub(super) fn target(&self) -> Result<Option<Target>, CliError> {
         let fixed = self.changes()?;
-        Ok(self.target_error.map(|n_rms| Target { n_rms, fixed }))
+        self.with_estimate(self.target_error.map(|n_rms| Target { n_rms, fixed }))
+    }
+
+    /// The target, unless the estimate that it takes is to be left out.
+    pub(super) fn with_estimate(&self, of: Option<Target>) -> Result<Option<Target>, CliError> {
+        match of.is_some() && self.audit_points == Some(0) {
+            false => Ok(of),
+            true => Err(CliError::Usage(
+                "--audit-points 0 leaves out the estimate by which --target-error is reached; give one of the two".into(),
+            )),
+        }
     }
 
     /// The options that are given.

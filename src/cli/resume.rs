@@ -55,10 +55,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         files.extend(inputs(file, &scene.names.file));
     }
     spare(&files, output, &arguments.how, &solution.cameras)?;
+    let settings = settings(&solution, arguments)?;
     prepare(output)?;
     catch_interrupts();
     let before = solution.report.clone();
-    let settings = settings(&solution, arguments)?;
     let mut run = Run::resume(solution, settings)?;
     let known_warnings = run.solution().report.warnings.len();
     if let Some(NamedScene { scene, .. }) = scene {
@@ -109,7 +109,7 @@ fn settings(solution: &Solution, arguments: &Arguments) -> Result<Settings, CliE
     };
     Ok(Settings {
         options: flags.over(report.options.clone())?,
-        target: flags.target()?.or(known.transpose()?),
+        target: flags.with_estimate(flags.target()?.or(known.transpose()?))?,
         engine,
         threads: arguments.how.threads,
     })

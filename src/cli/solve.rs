@@ -96,6 +96,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
     let watching = arguments.how.begin()?;
     let model = arguments.from.as_deref().map(read_report).transpose()?;
+    let flags = &arguments.flags;
+    let target = flags.target()?;
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
@@ -106,14 +108,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     spare(&files, &arguments.output, &arguments.how, &scene.cameras)?;
     prepare(&arguments.output)?;
     catch_interrupts();
-    let flags = &arguments.flags;
     let (options, engine) = match &model {
         Some(model) => (flags.over(model.options.clone())?, engine_of(model)?),
         None => (flags.options()?, EngineChoice::Auto),
     };
     let settings = Settings {
         options,
-        target: flags.target()?,
+        target,
         engine: arguments.how.engine.unwrap_or(engine),
         threads: arguments.how.threads,
     };
