@@ -23,7 +23,12 @@ const LIGHT: [&str; 6] = [
     "irradiance_b",
 ];
 
+/// What clap makes of the flags that exclude each other is a command that there is not.
+const USAGE: &str = "radiosity probe [OPTIONS] <SOLUTION> <POINTS>
+       radiosity probe [OPTIONS] <SOLUTION> --grid <PLANE>";
+
 #[derive(Debug, Args)]
+#[command(override_usage = USAGE)]
 pub(super) struct Arguments {
     /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
@@ -124,6 +129,12 @@ fn place(record: &StringRecord, columns: &[usize; 6], path: &Path) -> Result<[DV
         })?;
     }
     let [x, y, z, nx, ny, nz] = numbers;
+    if [nx, ny, nz] == [0.0; 3] {
+        return Err(CliError::Input(format!(
+            "{}:{line}: found the normal 0,0,0, expected a direction in which the point faces",
+            path.display()
+        )));
+    }
     Ok([DVec3::new(x, y, z), DVec3::new(nx, ny, nz)])
 }
 

@@ -146,6 +146,16 @@ fn bar() -> ProgressBar {
     bar
 }
 
+/// What is being done for how long, on a terminal, where it cannot be said how far it is.
+pub(super) fn sign_of_life(message: String) -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+    let sign = ProgressBar::new_spinner().with_style(style);
+    sign.set_message(message);
+    sign.enable_steady_tick(Duration::from_millis(120));
+    sign
+}
+
 /// What it is at, how far it is, how fast, and how long it may take.
 fn message(now: &Progress, unshot: f64, done: f64) -> String {
     let seconds = now.elapsed.as_secs_f64();
