@@ -10,7 +10,7 @@ use super::progress::{Look, catch_interrupts};
 use super::results::{PAGE, REPORT, SOLUTION, inputs, mesh_file, picture_folder, spare};
 use super::say;
 use super::session::{Session, Watching};
-use super::values::{duration, threads};
+use super::values::{interval, threads};
 use crate::output::{
     History, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
 };
@@ -73,7 +73,7 @@ pub(super) struct How {
     #[arg(short, long)]
     quiet: bool,
     /// Save the state at the start and then at these intervals (60 s if no TIME is given), for `radiosity resume`
-    #[arg(long, value_name = "TIME", value_parser = duration, num_args = 0..=1, default_missing_value = "60")]
+    #[arg(long, value_name = "TIME", value_parser = interval, num_args = 0..=1, default_missing_value = "60")]
     pub checkpoint: Option<Duration>,
 }
 

@@ -30,6 +30,13 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
     Ok(Duration::from_secs_f64(seconds))
 }
 
+/// A duration after a flag that may stand alone: what follows it may have been meant for something else.
+pub(super) fn interval(text: &str) -> Result<Duration, String> {
+    duration(text).map_err(|expected| {
+        format!("{expected}; if it is the scene or folder, name it before the flag, or write --checkpoint=60s")
+    })
+}
+
 /// A number of threads. More than this are a slip of the hand, and starting them may fail halfway.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     count(text, 1024, "threads")

@@ -141,6 +141,13 @@ fn wrong_usage_ends_with_2() {
         let name = flags[0].trim_end_matches("=-1");
         assert!(run.err.contains(name), "{flags:?}: {}", run.err);
     }
+    let eaten = radiosity(&["solve", "--checkpoint", text(&geometry), "-o", output]);
+    assert_eq!(eaten.code, Some(2), "{}", eaten.err);
+    assert!(
+        eaten.err.contains("name it before the flag"),
+        "{}",
+        eaten.err
+    );
     assert_eq!(
         radiosity(&["solve", text(&geometry)]).code,
         Some(2),
