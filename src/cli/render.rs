@@ -3,9 +3,9 @@
 use super::CliError;
 use super::error::Code;
 use super::pictures::draw;
+use super::progress::leave_nothing_on_interrupt;
 use super::results::{folder_of, picture_folder, read_solution};
 use super::viewpoint::Viewpoint;
-use crate::render::RenderOptions;
 use crate::visibility::EngineChoice;
 use clap::Args;
 use std::path::PathBuf;
@@ -25,20 +25,15 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
+    leave_nothing_on_interrupt();
     let solution = read_solution(&arguments.solution)?;
     let cameras = arguments.viewpoint.of(&solution.cameras)?;
     let lit = solution.lit_mesh();
     let beside = || folder_of(&arguments.solution);
     let folder = arguments.output.clone().unwrap_or_else(beside);
     for (number, camera) in cameras.iter().enumerate() {
-        draw(
-            &lit,
-            camera,
-            &RenderOptions::standard(),
-            arguments.engine,
-            0,
-            &picture_folder(&folder, number, camera),
-        )?;
+        let into = picture_folder(&folder, number, camera);
+        draw(&lit, camera, (arguments.engine, 0), &into, &|| true)?;
     }
     Ok(Code::Success)
 }

@@ -6,7 +6,7 @@ use super::flags::SolveFlags;
 use super::memory::{load_with_file, peak_memory};
 use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
-use super::progress::{Look, catch_interrupts};
+use super::progress::{Look, catch_interrupts, is_interrupted};
 use super::results::{PAGE, REPORT, SOLUTION, inputs, mesh_file, picture_folder, spare};
 use super::say;
 use super::session::{Session, Watching};
@@ -15,7 +15,7 @@ use crate::output::{
     History, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
 };
 use crate::radiometry::WHITE_EFFICACY;
-use crate::render::{RenderOptions, Tone};
+use crate::render::Tone;
 use crate::solution::{LitMesh, Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
@@ -217,14 +217,18 @@ pub(super) fn write_beside(
 ) -> Result<(), CliError> {
     // First of all, so that it is there whatever may fail below; and once more when the time that writing took is known.
     write_report(&solution.report, folder)?;
+    // Who interrupts the solve gets pictures of what there is; who interrupts these does not want them.
+    let before = is_interrupted();
+    let wanted = || before || !is_interrupted();
+    let mut drawn = false;
     if !how.formats.0.is_empty() || !how.no_pictures {
-        write_lit(solution, &solution.lit_mesh(), folder, how)?;
+        drawn = write_lit(solution, &solution.lit_mesh(), folder, how, &wanted)?;
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
     solution.report.peak_memory = peak_memory();
     write_report(&solution.report, folder)?;
     if !how.no_html {
-        write_page(solution, folder, how, history)?;
+        write_page(solution, folder, how, history, drawn)?;
     }
     Ok(())
 }
@@ -236,8 +240,14 @@ fn write_report(report: &Report, folder: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The meshes that were asked for, and the pictures.
-fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Result<(), CliError> {
+/// The meshes that were asked for, and the pictures while they are wanted; whether there are those of the first camera.
+fn write_lit(
+    solution: &Solution,
+    lit: &LitMesh,
+    folder: &Path,
+    how: &How,
+    wanted: &(dyn Fn() -> bool + Sync),
+) -> Result<bool, CliError> {
     let exporter = Exporter {
         solution,
         lit,
@@ -248,32 +258,30 @@ fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Re
         exporter.write(*format, &folder.join(mesh_file(*format)))?;
     }
     if how.no_pictures {
-        return Ok(());
+        return Ok(false);
     }
+    let engine = (how.engine.unwrap_or_default(), how.threads);
     for (number, camera) in solution.cameras.iter().enumerate() {
-        draw(
-            lit,
-            camera,
-            &RenderOptions::standard(),
-            how.engine.unwrap_or_default(),
-            how.threads,
-            &picture_folder(folder, number, camera),
-        )?;
+        let into = picture_folder(folder, number, camera);
+        if !draw(lit, camera, engine, &into, wanted)? {
+            return Ok(number > 0);
+        }
     }
-    Ok(())
+    Ok(true)
 }
 
-/// `report.html`, with the first camera's pictures.
+/// `report.html`, with the first camera's pictures if they were drawn.
 fn write_page(
     solution: &Solution,
     folder: &Path,
     how: &How,
     history: &History,
+    drawn: bool,
 ) -> Result<(), CliError> {
     let camera = solution.cameras.first().map_or("", |camera| &camera.name);
     let mut pictures = Vec::new();
     for (file, what) in [("shaded.png", "light"), ("mesh.png", "mesh")] {
-        if !how.no_pictures {
+        if drawn {
             let path = folder.join(file);
             let refused = |e| CliError::System(format!("cannot read {}: {e}", path.display()));
             let png = std::fs::read(&path).map_err(refused)?;
