@@ -32,7 +32,6 @@
 //! `tests/tidy` and `tests/solve` hold them.
 #![deny(missing_docs)]
 
-mod bytes;
 pub mod cli;
 pub mod codec;
 pub mod form_factor;
@@ -51,6 +50,7 @@ mod threads;
 #[cfg(feature = "viewer")]
 pub mod viewer;
 pub mod visibility;
+mod words;
 
 pub use pipeline::{Run, Settings, SolveError, Target, irradiance_at, solve};
 pub use threads::ThreadsError;

@@ -13,6 +13,7 @@ use crate::output::{
 };
 use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
+use crate::words::counted;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -302,10 +303,10 @@ fn summary(report: &Report<'_>) -> String {
     let pairs = &certificate.pairs;
     let (low, high) = certificate.sum_range();
     let mut text = format!(
-        "{} rows in {:.2} s; row sums {low:.6} to {high:.6}: {}\n\
-         largest error of a row {:.1e}; {} entries at the limit of refinement\n\
+        "{} in {:.2} s; row sums {low:.6} to {high:.6}: {}\n\
+         largest error of a row {:.1e}; {} at the limit of refinement\n\
          pairs of flat pieces: {} exchange nothing, {} unhindered, {} with shadows cut out, {} sampled with {} rays\n",
-        report.labels.len(),
+        counted(report.labels.len(), "row", "rows"),
         report.seconds,
         match report.closed {
             true => "closed".to_owned(),
@@ -315,7 +316,7 @@ fn summary(report: &Report<'_>) -> String {
             ),
         },
         certificate.largest_error(),
-        certificate.limited.len(),
+        counted(certificate.limited.len(), "entry", "entries"),
         pairs.nothing,
         pairs.unhindered,
         pairs.cut + pairs.limited,
@@ -338,8 +339,9 @@ fn summary(report: &Report<'_>) -> String {
     }
     if let Some(dropped) = &report.dropped {
         text += &format!(
-            "left out: {} entries with {:.3e} of the flux\n",
-            dropped.entries, dropped.share
+            "left out: {} with {:.3e} of the flux\n",
+            counted(dropped.entries, "entry", "entries"),
+            dropped.share
         );
     }
     text

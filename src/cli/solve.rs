@@ -19,6 +19,7 @@ use crate::render::Tone;
 use crate::solution::{LitMesh, Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
+use crate::words::counted;
 use crate::{Run, Settings};
 use clap::Args;
 use std::io::Write;
@@ -321,37 +322,31 @@ pub(super) fn summary(solution: &Solution, seconds: f64) -> String {
             0.0
         }
     };
-    let why = match report.stop_reason {
-        StopReason::Converged => "converged",
-        StopReason::MaxShots => "stopped at the largest number of shots",
-        StopReason::TimeLimit => "stopped at the time limit",
-        StopReason::Interrupted => "interrupted",
-        StopReason::NoEmitter => "nothing emits",
-    };
+    let why = report.ended();
     let estimate = report.audit.map_or(String::new(), |audit| {
         format!(
-            "estimated error of the irradiance: {:.2}% nRMS, of it {:+.2}% bias, at {} points\n",
+            "estimated error of the irradiance: {:.2}% nRMS, of it {:+.2}% bias, at {}\n",
             100.0 * audit.n_rms,
             100.0 * audit.bias,
-            audit.points
+            counted(audit.points, "point", "points")
         )
     });
     format!(
         "{}{why}: {} emitted = {:.2}% absorbed + {:.2}% escaped + {:.2}% unshot + {:.2}% residual\n\
-         {estimate}{} vertices, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {} threads\n",
+         {estimate}{}, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {}\n",
         summary_table(&[row]),
         say::watts(power.emitted),
         percent(power.absorbed),
         percent(power.escaped),
         percent(power.unshot),
         percent(power.residual),
-        report.vertices,
+        counted(report.vertices, "vertex", "vertices"),
         report.rays as f64 / 1e6,
         report.rays as f64 / 1e6 / report.seconds.solve.max(1e-9),
         report.engine.name,
         report.engine.version,
         report.engine.isa,
         report.engine.packet_width,
-        report.threads,
+        counted(report.threads, "thread", "threads"),
     )
 }

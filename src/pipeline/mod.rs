@@ -10,12 +10,12 @@ pub use measure::irradiance_at;
 pub use run::Run;
 pub use target::Target;
 
-use crate::bytes::size;
 use crate::scene::Scene;
 use crate::solution::Solution;
 use crate::solver::{Observer, Options};
 use crate::threads::ThreadsError;
 use crate::visibility::{EngineChoice, VisibilityError};
+use crate::words::size;
 use thiserror::Error;
 
 /// How a scene is solved.

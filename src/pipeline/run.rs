@@ -1,7 +1,7 @@
 //! A solve that can be left and taken up again.
 
 use super::report::{blank, take_in};
-use super::warnings::{counted, forget_the_end, warn_at_end};
+use super::warnings::{forget_the_end, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -12,6 +12,7 @@ use crate::solver::{
 };
 use crate::threads::pool;
 use crate::visibility::{Clocked, EngineChoice, Visibility, VisibilityError, build_within};
+use crate::words::counted;
 use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
@@ -341,7 +342,7 @@ fn check_emitters(scene: &Scene, mesh: &Mesh) -> Result<(), SolveError> {
 /// Notes what a solve goes on with, if it is not what it began with.
 fn note(report: &mut Report, with: &str) {
     if report.shots > 0 {
-        let after = counted(report.shots, "shot");
+        let after = counted(report.shots, "shot", "shots");
         report.resumed_with.push(format!("{with} after {after}"));
     }
 }

@@ -4,6 +4,7 @@ use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::solution::Report;
 use crate::solver::{MeshingEnd, Shooting, StopReason};
+use crate::words::counted;
 
 /// The share of the emitted power on sides that do not radiate from which on it is worth a word …
 const ONTO_BACKS: f64 = 0.01;
@@ -59,7 +60,7 @@ fn end(report: &Report) -> Option<String> {
     let unshot = 100.0 * (report.power.unshot / report.power.emitted).abs();
     Some(format!(
         "{begin} before it had converged, after {}: {unshot:.2}% of the emitted power is unshot",
-        counted(report.shots, "shot")
+        counted(report.shots, "shot", "shots")
     ))
 }
 
@@ -70,8 +71,8 @@ fn end_of_meshing(report: &Report) -> Option<String> {
     };
     Some(format!(
         "{begin} after {}, at {}",
-        counted(report.meshing_shots, "shot"),
-        counted(report.elements as u64, "element")
+        counted(report.meshing_shots, "shot", "shots"),
+        counted(report.elements, "element", "elements")
     ))
 }
 
@@ -81,14 +82,9 @@ fn target_missed(report: &Report) -> Option<String> {
         format!(
             "{ERROR_MISSED}: the estimate is not below {}% after {}",
             100.0 * target.n_rms,
-            counted(target.rounds as u64, "solve")
+            counted(target.rounds, "solve", "solves")
         )
     })
-}
-
-pub(super) fn counted(count: u64, of: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {of}{plural}")
 }
 
 /// Warns of options that clusters pass over.
@@ -129,28 +125,30 @@ fn warn_of_losses(report: &mut Report) {
     }
 }
 
+const SURFACES: (&str, &str) = ("surface", "surfaces");
+
 /// What the reader found suspicious, and what could not be meshed as it should.
 pub(super) fn warnings(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let mut warnings = scene.warnings.clone();
-    for (count, of, what) in [
+    for (count, (one, more), what) in [
         (
             mesh.unsplit_contacts,
-            "surface",
+            SURFACES,
             "not split where others meet: light may leak along the contacts",
         ),
         (
             mesh.uncut_gaps,
-            "surface",
+            SURFACES,
             "not cut below the rims of what is close in front: light may end there in teeth",
         ),
         (
             mesh.covered_sides,
-            "side",
+            ("side", "sides"),
             "in the plane of another that faces the same way left out: light would be reflected there twice",
         ),
     ] {
         if count > 0 {
-            warnings.push(format!("{} {what}", counted(count as u64, of)));
+            warnings.push(format!("{} {what}", counted(count, one, more)));
         }
     }
     warnings

@@ -65,6 +65,19 @@ pub struct Report {
     pub warnings: Vec<String>,
 }
 
+impl Report {
+    /// Why the solve ended, in words.
+    pub fn ended(&self) -> &'static str {
+        match self.stop_reason {
+            StopReason::Converged => "converged",
+            StopReason::MaxShots => "stopped at the largest number of shots",
+            StopReason::TimeLimit => "stopped at the time limit",
+            StopReason::Interrupted => "interrupted",
+            StopReason::NoEmitter => "nothing emits",
+        }
+    }
+}
+
 /// What became of `--target-error`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetReport {

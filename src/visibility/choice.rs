@@ -1,7 +1,7 @@
 //! Which engine answers, and what can go wrong while it is built.
 
 use super::{BruteForce, Isa, Obvhs, Triangles, Visibility};
-use crate::bytes::size;
+use crate::words::size;
 use glam::Vec3;
 use std::fmt;
 use std::str::FromStr;

@@ -1,6 +1,6 @@
 //! What Embree calls back about: the memory that it takes, and what it has to say of its errors.
 
-use crate::bytes::size;
+use crate::words::size;
 use embree4_sys as sys;
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::Mutex;

@@ -1,4 +1,17 @@
-//! Amounts of memory in words. Imports nothing of ours.
+//! Amounts in words: counts, and sizes of memory. Imports nothing of ours.
+
+/// So many of them, in the singular where it is one.
+pub(crate) fn counted(count: impl TryInto<u64>, one: &str, more: &str) -> String {
+    let count = count.try_into().unwrap_or(u64::MAX);
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
+/// A number with so many decimals, and no zero that is negative.
+pub(crate) fn rounded(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.bytes().all(|b| b"-0.".contains(&b));
+    text[usize::from(is_zero && text.starts_with('-'))..].to_owned()
+}
 
 /// `bytes` in the units that somebody chose for `like`: powers of 1024 if that is a whole number of them, else of 1000.
 pub(crate) fn size(bytes: u64, like: u64) -> String {
@@ -19,8 +32,7 @@ pub(crate) fn size(bytes: u64, like: u64) -> String {
         ],
     };
     let Some((unit, name)) = units.into_iter().find(|(unit, _)| bytes >= *unit) else {
-        let plural = if bytes == 1 { "" } else { "s" };
-        return format!("{bytes} byte{plural}");
+        return counted(bytes, "byte", "bytes");
     };
     match bytes.is_multiple_of(unit) {
         true => format!("{} {name}", bytes / unit),
@@ -30,7 +42,15 @@ pub(crate) fn size(bytes: u64, like: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::size;
+    use super::{rounded, size};
+
+    #[test]
+    fn no_zero_is_negative() {
+        assert_eq!(rounded(-1e-9, 6), "0.000000");
+        assert_eq!(rounded(-0.0, 2), "0.00");
+        assert_eq!(rounded(-0.25, 2), "-0.25");
+        assert_eq!(rounded(1.5, 1), "1.5");
+    }
 
     #[test]
     fn sizes_are_told_in_the_units_of_the_limit() {
