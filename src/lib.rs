@@ -50,6 +50,7 @@ mod threads;
 #[cfg(feature = "viewer")]
 pub mod viewer;
 pub mod visibility;
+mod words;
 
 pub use pipeline::{Run, Settings, SolveError, Target, irradiance_at, solve};
 pub use threads::ThreadsError;

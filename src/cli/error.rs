@@ -18,6 +18,7 @@ use crate::viewer::WindowError;
 pub(super) enum Code {
     Success = 0,
     Failure = 1,
+    Usage = 2,
     BadInput = 3,
     Interrupted = 130,
 }
@@ -47,6 +48,9 @@ pub(super) enum CliError {
     #[cfg(feature = "viewer")]
     #[error(transparent)]
     Window(#[from] WindowError),
+    /// Flags that cannot be meant, alone or of this input.
+    #[error("{0}")]
+    Usage(String),
     /// An input that is not a scene or solution.
     #[error("{0}")]
     Input(String),
@@ -64,6 +68,7 @@ impl CliError {
             | CliError::Enforce(_)
             | CliError::Matrix(MatrixError::NothingRadiates | MatrixError::TooLarge { .. })
             | CliError::Solve(SolveError::NotKept | SolveError::OtherScene(_)) => Code::BadInput,
+            CliError::Usage(_) => Code::Usage,
             _ => Code::Failure,
         }
     }

@@ -3,17 +3,16 @@
 use super::CliError;
 use super::error::Code;
 use super::meshes::{Exporter, MeshFormat};
-use super::solve::SOLUTION;
+use super::results::read_solution;
 use super::values::{finite, positive};
 use crate::radiometry::WHITE_EFFICACY;
 use crate::render::Tone;
-use crate::solution::Solution;
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The folder that `solve` wrote
+    /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
     /// The file to write; its ending says how: .glb, .obj, .ply or .vtu
     #[arg(short, long, value_name = "FILE")]
@@ -28,7 +27,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = MeshFormat::of(&arguments.output)?;
-    let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
+    let solution = read_solution(&arguments.solution)?;
     let lit = solution.lit_mesh();
     let exporter = Exporter {
         solution: &solution,

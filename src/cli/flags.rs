@@ -1,7 +1,9 @@
 //! Every option of a solve as a flag, over a preset.
 
 use super::CliError;
-use super::values::{bytes, duration, error, fraction, named, not_negative, points, positive};
+use super::values::{
+    bytes, duration, error, fraction, index, named, not_negative, points, positive,
+};
 use crate::Target;
 use crate::solver::{Changes, FormFactorRule, Options, Preset, Quantity, Shooting};
 use clap::Args;
@@ -23,7 +25,7 @@ pub(super) struct SolveFlags {
     #[arg(long = "eps-r", value_name = "RELATIVE", value_parser = positive, help_heading = MESHING)]
     epsilon_r: Option<f64>,
     /// ε_v: … while visibility indices at its corners, middles of sides and centre differ by this much
-    #[arg(long = "eps-v", value_name = "0..1", value_parser = positive, help_heading = MESHING)]
+    #[arg(long = "eps-v", value_name = "0..1", value_parser = index, help_heading = MESHING)]
     epsilon_v: Option<f64>,
     /// Ask for visibility where a shot, unoccluded, would give more than this
     #[arg(long = "significance", value_name = "RELATIVE", value_parser = positive, help_heading = MESHING)]
@@ -82,7 +84,7 @@ pub(super) struct SolveFlags {
     /// After the last shot, light every vertex of the finished mesh once more by every patch
     #[arg(long, value_name = "true|false", help_heading = PROGRESS)]
     regather: Option<bool>,
-    /// Points at which the error is estimated at the end; 0 for no estimate
+    /// Points at which the error is estimated at the end; 0 for no estimate. With --target-error 256 at least
     #[arg(long, value_name = "N", value_parser = points, help_heading = PROGRESS)]
     audit_points: Option<usize>,
     /// With more patches than this, all shoot at once as clusters instead of one after the other
@@ -97,7 +99,7 @@ pub(super) struct SolveFlags {
     /// Refine no further when there are this many elements
     #[arg(long, value_name = "N", help_heading = MESHING)]
     max_elements: Option<usize>,
-    /// Refine no further when the process would need more memory than this (bytes, or with MB, GB, MiB, GiB)
+    /// Refine no further when the process would need more memory than this (bytes, or with a unit from KB to TB or KiB to TiB); the largest picture counts
     #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = MESHING)]
     memory_limit: Option<u64>,
 }
@@ -126,7 +128,17 @@ impl SolveFlags {
     /// The error to be reached, if one is named.
     pub(super) fn target(&self) -> Result<Option<Target>, CliError> {
         let fixed = self.changes()?;
-        Ok(self.target_error.map(|n_rms| Target { n_rms, fixed }))
+        self.with_estimate(self.target_error.map(|n_rms| Target { n_rms, fixed }))
+    }
+
+    /// The target, unless the estimate that it takes is to be left out.
+    pub(super) fn with_estimate(&self, of: Option<Target>) -> Result<Option<Target>, CliError> {
+        match of.is_some() && self.audit_points == Some(0) {
+            false => Ok(of),
+            true => Err(CliError::Usage(
+                "--audit-points 0 leaves out the estimate by which --target-error is reached; give one of the two".into(),
+            )),
+        }
     }
 
     /// The options that are given.

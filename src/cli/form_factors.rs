@@ -5,7 +5,7 @@ use super::error::Code;
 use super::heat::{self, write_radiosity};
 use super::progress::leave_nothing_on_interrupt;
 use super::say;
-use super::values::{named, not_negative, positive, threads};
+use super::values::{cut_off, named, positive, threads};
 use crate::matrix::{By, Certificate, Correction, Enclosure, FormFactors, Options, Row};
 use crate::output::{
     Dropped, MatrixTable, Sink, check_writable, remove_abandoned, write_atomically,
@@ -13,6 +13,7 @@ use crate::output::{
 };
 use crate::scene::NamedScene;
 use crate::visibility::EngineChoice;
+use crate::words::counted;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -42,11 +43,11 @@ pub(super) struct Arguments {
     /// Solve for radiosity and net flux with the materials' reflectance and emission, into FILE.radiosity.csv
     #[arg(long)]
     solve: bool,
-    /// The same for heat: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
-    #[arg(long, value_name = "FILE")]
+    /// The same for heat, in place of light: a table with the columns label, temperature_K and, if it is not 1 - reflectance, emissivity
+    #[arg(long, value_name = "FILE", conflicts_with = "solve")]
     temperatures: Option<PathBuf>,
     /// Leave entries below this out of an .mtx; says what share of the flux they carry
-    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = not_negative)]
+    #[arg(long, default_value_t = 0.0, value_name = "F", value_parser = cut_off)]
     cut_off: f64,
     /// Who traces rays where there is too much between two surfaces: auto, embree, obvhs or brute-force
     #[arg(long, default_value = "auto", value_name = "ENGINE")]
@@ -95,6 +96,12 @@ struct Report<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let format = format_of(&arguments.output)?;
+    if arguments.cut_off > 0.0 && format != Format::MatrixMarket {
+        return Err(CliError::Usage(format!(
+            "--cut-off is for a sparse matrix (.mtx); {} has all entries",
+            arguments.output.display()
+        )));
+    }
     leave_nothing_on_interrupt();
     check_writable(&arguments.output)?;
     let folder = arguments.output.parent().filter(|it| *it != Path::new(""));
@@ -222,7 +229,7 @@ fn format_of(path: &Path) -> Result<Format, CliError> {
         "csv" => Ok(Format::Csv),
         "npz" => Ok(Format::Npz),
         "mtx" => Ok(Format::MatrixMarket),
-        _ => Err(CliError::Input(format!(
+        _ => Err(CliError::Usage(format!(
             "cannot write {}: found the ending `{extension}`, expected .csv, .npz or .mtx",
             path.display()
         ))),
@@ -296,10 +303,10 @@ fn summary(report: &Report<'_>) -> String {
     let pairs = &certificate.pairs;
     let (low, high) = certificate.sum_range();
     let mut text = format!(
-        "{} rows in {:.2} s; row sums {low:.6} to {high:.6}: {}\n\
-         largest error of a row {:.1e}; {} entries at the limit of refinement\n\
+        "{} in {:.2} s; row sums {low:.6} to {high:.6}: {}\n\
+         largest error of a row {:.1e}; {} at the limit of refinement\n\
          pairs of flat pieces: {} exchange nothing, {} unhindered, {} with shadows cut out, {} sampled with {} rays\n",
-        report.labels.len(),
+        counted(report.labels.len(), "row", "rows"),
         report.seconds,
         match report.closed {
             true => "closed".to_owned(),
@@ -309,7 +316,7 @@ fn summary(report: &Report<'_>) -> String {
             ),
         },
         certificate.largest_error(),
-        certificate.limited.len(),
+        counted(certificate.limited.len(), "entry", "entries"),
         pairs.nothing,
         pairs.unhindered,
         pairs.cut + pairs.limited,
@@ -332,8 +339,9 @@ fn summary(report: &Report<'_>) -> String {
     }
     if let Some(dropped) = &report.dropped {
         text += &format!(
-            "left out: {} entries with {:.3e} of the flux\n",
-            dropped.entries, dropped.share
+            "left out: {} with {:.3e} of the flux\n",
+            counted(dropped.entries, "entry", "entries"),
+            dropped.share
         );
     }
     text

@@ -1,5 +1,6 @@
 //! `radiosity probe --grid`: illuminance on a plane of work.
 
+use super::progress::sign_of_life;
 use super::values::{png, positive, threads};
 use super::{CliError, say};
 use crate::geometry;
@@ -12,6 +13,7 @@ use crate::visibility::EngineChoice;
 use clap::Args;
 use csv::WriterBuilder;
 use glam::DVec3;
+use indicatif::HumanCount;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,8 +42,8 @@ pub(super) struct GridFlags {
     /// Who traces the rays: auto, embree, obvhs or brute-force
     #[arg(long, default_value = "auto", value_name = "ENGINE", requires = "grid", conflicts_with = "points", help_heading = GRID)]
     engine: EngineChoice,
-    /// Threads; 0 for as many as the machine has
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads, requires = "grid", conflicts_with = "points", help_heading = GRID)]
+    /// Threads for a grid; 0 for as many as the machine has. A table of points takes one
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
 }
 
@@ -56,7 +58,13 @@ impl GridFlags {
         let plane = self.plane(solution, at)?;
         let normal = plane.normal();
         let places: Vec<(DVec3, DVec3)> = plane.points().map(|point| (point, normal)).collect();
-        let found = irradiance_at(solution, &places, self.engine, self.threads)?;
+        let sign = sign_of_life(format!(
+            "measuring at {} points",
+            HumanCount(places.len() as u64)
+        ));
+        let found = irradiance_at(solution, &places, self.engine, self.threads);
+        sign.finish_and_clear();
+        let found = found?;
         let lux: Vec<Option<f64>> = found
             .iter()
             .map(|irradiance| irradiance.map(|e| photometric(e, self.efficacy)))
@@ -98,7 +106,7 @@ impl GridFlags {
             _ => {
                 let (rows, columns) = (plane.rows, plane.columns);
                 let found = format!("a grid of {columns} x {rows} points");
-                Err(CliError::Input(format!(
+                Err(CliError::Usage(format!(
                     "{found}; expected {MOST_POINTS} at most: a larger --spacing or a --region"
                 )))
             }

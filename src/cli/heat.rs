@@ -1,12 +1,12 @@
 //! Temperatures in, radiosity and net flux out.
 
-use super::CliError;
+use super::table::{column, open, place_of, unreadable};
+use super::{CliError, say};
 use crate::matrix::{Balance, Matrix, Row};
 use crate::output::write_atomically;
 use crate::radiometry::Power;
-use csv::{ReaderBuilder, WriterBuilder};
+use csv::{StringRecord, WriterBuilder};
 use rustc_hash::FxHashMap;
-use serde::Deserialize;
 use std::io::Write;
 use std::path::Path;
 
@@ -20,53 +20,84 @@ pub(super) struct Heat {
 }
 
 /// The temperature of a row.
-#[derive(Debug, Deserialize)]
+#[derive(Debug)]
 pub(super) struct Zone {
     label: String,
-    #[serde(rename = "temperature_K")]
     temperature: f64,
     emissivity: Option<f64>,
-    #[serde(skip)]
     line: u64,
 }
 
+const COLUMNS: [&str; 3] = ["label", "temperature_K", "emissivity"];
+
 /// Reads a table with the columns label, temperature_K and perhaps emissivity.
 pub(super) fn read(path: &Path) -> Result<Heat, CliError> {
-    let file = path.display().to_string();
-    let unreadable = |e: csv::Error| CliError::Input(format!("cannot read {file}: {e}"));
-    let mut reader = ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path)
-        .map_err(unreadable)?;
+    let broken = |e: csv::Error| unreadable(path, &e);
+    let mut reader = open(path)?;
+    let header = reader.headers().map_err(broken)?.clone();
+    let [label, temperature, emissivity] = COLUMNS;
+    let columns = (
+        column(&header, path, label)?,
+        column(&header, path, temperature)?,
+        place_of(&header, emissivity),
+    );
+    warn_of_others(&header, path);
     let mut zones = Vec::new();
-    let header = reader.headers().map_err(unreadable)?.clone();
     for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let mut zone: Zone = record.deserialize(Some(&header)).map_err(unreadable)?;
-        zone.line = record.position().map_or(0, csv::Position::line);
-        let bad = |found: String, expected: &str| {
-            Err(CliError::Input(format!(
-                "{file}:{}: found {found}; expected {expected}",
-                zone.line
-            )))
-        };
-        if !(zone.temperature.is_finite() && zone.temperature >= 0.0) {
-            return bad(
-                format!("the temperature {}", zone.temperature),
-                "kelvins, 0 or more",
-            );
-        }
-        if let Some(e) = zone.emissivity.filter(|e| !(*e > 0.0 && *e <= 1.0)) {
-            return bad(format!("the emissivity {e}"), "0 < emissivity <= 1");
-        }
-        zones.push(zone);
+        zones.push(zone(&record.map_err(broken)?, columns, path)?);
     }
+    let file = path.display().to_string();
     Ok(Heat { file, zones })
 }
 
+/// Who misspells the emissivity is told that it was not read.
+fn warn_of_others(header: &StringRecord, path: &Path) {
+    let is_known = |name: &&str| COLUMNS.contains(&name.trim_start_matches('\u{feff}'));
+    let others: Vec<&str> = header.iter().filter(|name| !is_known(name)).collect();
+    if !others.is_empty() {
+        say::warning(&format!(
+            "{}:1: columns that are not read: `{}`; those that are: {}",
+            path.display(),
+            others.join("`, `"),
+            COLUMNS.join(", ")
+        ));
+    }
+}
+
+fn zone(
+    record: &StringRecord,
+    (label, temperature, emissivity): (usize, usize, Option<usize>),
+    path: &Path,
+) -> Result<Zone, CliError> {
+    let line = record.position().map_or(0, csv::Position::line);
+    let number = |what: &str, text: &str, expected: &str, allowed: fn(&f64) -> bool| {
+        let number = text.parse().ok().filter(allowed);
+        number.ok_or_else(|| {
+            let (file, found) = (path.display(), format!("the {what} `{text}`"));
+            CliError::Input(format!("{file}:{line}: found {found}; expected {expected}"))
+        })
+    };
+    let emissivity = emissivity.map(|column| &record[column]);
+    let emissivity = emissivity.filter(|text| !text.is_empty()).map(|text| {
+        number("emissivity", text, "0 < emissivity <= 1", |e| {
+            *e > 0.0 && *e <= 1.0
+        })
+    });
+    Ok(Zone {
+        label: record[label].to_owned(),
+        temperature: number(
+            "temperature",
+            &record[temperature],
+            "kelvins, 0 or more",
+            |t| t.is_finite() && *t >= 0.0,
+        )?,
+        emissivity: emissivity.transpose()?,
+        line,
+    })
+}
+
 impl Heat {
-    /// The temperature of each row; refuses labels that no row has, and rows without a temperature.
+    /// The temperature of each row; refuses labels that no row has or that are there twice, and rows without a temperature.
     pub fn of_rows(self, rows: &[Row]) -> Result<Vec<Zone>, CliError> {
         let numbers = rows.iter().zip(0..).map(|(row, k)| (row.label.as_str(), k));
         let numbers: FxHashMap<&str, usize> = numbers.collect();
@@ -79,6 +110,12 @@ impl Heat {
                     "{file}:{line}: found the label `{label}`; expected one of the matrix's rows"
                 )));
             };
+            if let Some(first) = &known[*row] {
+                let (line, label, first) = (zone.line, &zone.label, first.line);
+                return Err(CliError::Input(format!(
+                    "{file}:{line}: found the label `{label}` again, after line {first}; expected each once"
+                )));
+            }
             known[*row] = Some(zone);
         }
         let of_row = |(zone, row): (Option<Zone>, &Row)| {

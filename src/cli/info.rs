@@ -4,6 +4,7 @@ use super::CliError;
 use super::error::Code;
 use super::say;
 use crate::scene::{MaterialSummary, Scene, Summary};
+use crate::words::counted;
 use clap::Args;
 use rustc_hash::FxHashMap;
 use std::fmt::Write;
@@ -34,8 +35,11 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
     line(
         "surfaces",
         format!(
-            "{} ({} triangles, {} quads), {} two-sided",
-            summary.surfaces, summary.triangles, summary.quads, summary.two_sided
+            "{} ({}, {}), {} two-sided",
+            summary.surfaces,
+            counted(summary.triangles, "triangle", "triangles"),
+            counted(summary.quads, "quad", "quads"),
+            summary.two_sided
         ),
     );
     line("area", format!("{:.6} m²", summary.area));
@@ -62,11 +66,11 @@ fn describe(scene: &Scene, summary: &Summary) -> String {
         line(
             "material",
             format!(
-                "{} reflectance {:.3} radiance {:.3}{mean}: {} surfaces, {:.6} m²",
+                "{} reflectance {:.3} radiance {:.3}{mean}: {}, {:.6} m²",
                 material.name,
                 material.reflectance,
                 material.emitted_radiance,
-                of.surfaces,
+                counted(of.surfaces, "surface", "surfaces"),
                 of.area
             ),
         );

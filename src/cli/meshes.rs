@@ -34,7 +34,7 @@ impl MeshFormat {
                 .iter()
                 .map(|f| f.extension())
                 .collect();
-            CliError::Input(format!(
+            CliError::Usage(format!(
                 "found the file name {}; expected one that ends in .{}",
                 path.display(),
                 names.join(", .")

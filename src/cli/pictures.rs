@@ -2,26 +2,29 @@
 
 use super::CliError;
 use crate::output::{write_exr, write_png};
-use crate::render::{RenderOptions, View};
+use crate::render::{Place, RenderOptions};
 use crate::scene::Camera;
 use crate::solution::LitMesh;
 use crate::visibility::{EngineChoice, build};
 use std::path::Path;
 
-/// Writes `shaded.exr`, `shaded.png`, `wireframe.png` and `mesh.png` of one camera into `folder`.
+/// Writes `shaded.exr`, `shaded.png`, `wireframe.png` and `mesh.png` of one camera into `folder`; whether it came to the end, as it does
+/// while they are `wanted`. None of them is written in part.
 pub(super) fn draw(
     lit: &LitMesh,
     camera: &Camera,
-    options: &RenderOptions,
-    engine: EngineChoice,
-    threads: usize,
+    (engine, threads): (EngineChoice, usize),
     folder: &Path,
-) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| CliError::System(format!("cannot make {}: {e}", folder.display())))?;
-    let view = View::new(lit, camera, options, |triangles| {
+    wanted: &(dyn Fn() -> bool + Sync),
+) -> Result<bool, CliError> {
+    let place = Place::new(lit, camera.eye, |triangles| {
         build(engine, &triangles, threads)
     })?;
+    let Some(view) = place.view(camera, &RenderOptions::standard(), wanted) else {
+        return Ok(false);
+    };
+    std::fs::create_dir_all(folder)
+        .map_err(|e| CliError::System(format!("cannot make {}: {e}", folder.display())))?;
     let radiance = view.radiance();
     write_exr(
         &folder.join("shaded.exr"),
@@ -29,6 +32,7 @@ pub(super) fn draw(
         radiance.height,
         &radiance.pixels,
     )?;
+    drop(radiance);
     for (name, picture) in [
         ("shaded.png", view.shaded()),
         ("wireframe.png", view.wireframe()),
@@ -41,5 +45,5 @@ pub(super) fn draw(
             &picture.pixels,
         )?;
     }
-    Ok(())
+    Ok(true)
 }

@@ -2,12 +2,13 @@
 
 use super::error::Code;
 use super::grid::GridFlags;
-use super::solve::SOLUTION;
+use super::results::read_solution;
+use super::table::{column, open, unreadable};
 use super::{CliError, say};
 use crate::output::write_atomically;
 use crate::solution::{Probe, Prober, Solution};
 use clap::Args;
-use csv::{ErrorKind, ReaderBuilder, StringRecord, WriterBuilder};
+use csv::{StringRecord, WriterBuilder};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,9 +23,14 @@ const LIGHT: [&str; 6] = [
     "irradiance_b",
 ];
 
+/// What clap makes of the flags that exclude each other is a command that there is not.
+const USAGE: &str = "radiosity probe [OPTIONS] <SOLUTION> <POINTS>
+       radiosity probe [OPTIONS] <SOLUTION> --grid <PLANE>";
+
 #[derive(Debug, Args)]
+#[command(override_usage = USAGE)]
 pub(super) struct Arguments {
-    /// The folder that `solve` wrote
+    /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
     /// A table with the columns x,y,z,nx,ny,nz (scene units); other columns are kept, but for the light of an earlier probe
     #[arg(required_unless_present = "grid", conflicts_with = "grid")]
@@ -37,7 +43,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
-    let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
+    let solution = read_solution(&arguments.solution)?;
     if let Some(plane) = &arguments.grid.grid {
         let output = arguments.output.as_deref();
         arguments.grid.measure(&solution, plane, output)?;
@@ -68,11 +74,7 @@ fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Co
 /// The table of points with the light added, and how many points met no surface.
 fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), CliError> {
     let unreadable = |e: csv::Error| unreadable(path, &e);
-    let mut reader = ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path)
-        .map_err(unreadable)?;
+    let mut reader = open(path)?;
     let header = reader.headers().map_err(unreadable)?.clone();
     let columns = place_columns(&header, path)?;
     let prober = Prober::new(solution);
@@ -105,37 +107,10 @@ fn probe_table(solution: &Solution, path: &Path) -> Result<(Vec<u8>, usize), Cli
     Ok((table, missed))
 }
 
-/// Why a table cannot be read.
-fn unreadable(path: &Path, error: &csv::Error) -> CliError {
-    let name = path.display();
-    let line = error.position().map_or(0, csv::Position::line);
-    let (found, expected) = match error.kind() {
-        ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => (
-            format!("{len} columns"),
-            format!("{expected_len} as in the lines before"),
-        ),
-        ErrorKind::Utf8 { .. } => ("bytes that are not UTF-8".into(), "text".into()),
-        _ => return CliError::Input(format!("cannot read {name}: {error}")),
-    };
-    CliError::Input(format!("{name}:{line}: found {found}, expected {expected}"))
-}
-
 fn place_columns(header: &StringRecord, path: &Path) -> Result<[usize; 6], CliError> {
     let mut columns = [0; 6];
-    for (column, name) in columns.iter_mut().zip(PLACE) {
-        // A byte order mark stays with the first name.
-        let position = header
-            .iter()
-            .position(|field| field.trim_start_matches('\u{feff}') == name);
-        *column = position.ok_or_else(|| {
-            let found = header.iter().collect::<Vec<_>>().join(",");
-            CliError::Input(format!(
-                "{}:1: found the columns `{found}`, expected one named `{name}`",
-                path.display()
-            ))
-        })?;
+    for (place, name) in columns.iter_mut().zip(PLACE) {
+        *place = column(header, path, name)?;
     }
     Ok(columns)
 }
@@ -154,6 +129,12 @@ fn place(record: &StringRecord, columns: &[usize; 6], path: &Path) -> Result<[DV
         })?;
     }
     let [x, y, z, nx, ny, nz] = numbers;
+    if [nx, ny, nz] == [0.0; 3] {
+        return Err(CliError::Input(format!(
+            "{}:{line}: found the normal 0,0,0, expected a direction in which the point faces",
+            path.display()
+        )));
+    }
     Ok([DVec3::new(x, y, z), DVec3::new(nx, ny, nz)])
 }
 

@@ -1,6 +1,7 @@
 //! `--profile`: where the time of a solve went.
 
 use crate::solution::Report;
+use crate::words::counted;
 
 /// A line for each part, with its share of all.
 pub(super) fn profile(report: &Report) -> String {
@@ -24,9 +25,10 @@ pub(super) fn profile(report: &Report) -> String {
         format!("{name:<15} {seconds:>9.2} s {share:>5.1}%\n")
     };
     let lines: String = lines.iter().map(line).collect();
-    let (processors, threads) = (seconds.solve * report.threads as f64, report.threads);
+    let processors = seconds.solve * report.threads as f64;
+    let threads = counted(report.threads, "thread", "threads");
     format!(
-        "{lines}of {processors:.2} s on {threads} threads between the first shot and the end, rays took {:.2} s ({:.1}%); form factors, \
+        "{lines}of {processors:.2} s on {threads} between the first shot and the end, rays took {:.2} s ({:.1}%); form factors, \
          meshing and waiting the rest\n",
         parts.rays,
         share(parts.rays, processors),

@@ -126,7 +126,8 @@ impl Watch {
     /// About how much of the time has passed. Unshot power falls geometrically, so its logarithm tells how far there is to go;
     /// gathering takes about as long as the shots did.
     fn done(&self, now: &Progress, unshot: f64) -> f64 {
-        let shot = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0);
+        // The logarithm of 1 makes a zero that is negative.
+        let shot = (unshot.max(1e-12).ln() / self.tolerance.ln()).clamp(0.0, 1.0) + 0.0;
         match now.phase {
             Phase::Shooting | Phase::Refining => 0.6 * shot,
             Phase::Gathering { done, of } => 0.6 + 0.35 * f64::from(done) / f64::from(of.max(1)),
@@ -143,6 +144,16 @@ fn bar() -> ProgressBar {
     bar.set_message("preparing");
     bar.enable_steady_tick(Duration::from_millis(120));
     bar
+}
+
+/// What is being done for how long, on a terminal, where it cannot be said how far it is.
+pub(super) fn sign_of_life(message: String) -> ProgressBar {
+    let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+    let sign = ProgressBar::new_spinner().with_style(style);
+    sign.set_message(message);
+    sign.enable_steady_tick(Duration::from_millis(120));
+    sign
 }
 
 /// What it is at, how far it is, how fast, and how long it may take.

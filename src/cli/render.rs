@@ -3,21 +3,20 @@
 use super::CliError;
 use super::error::Code;
 use super::pictures::draw;
-use super::solve::SOLUTION;
+use super::progress::leave_nothing_on_interrupt;
+use super::results::{folder_of, picture_folder, read_solution};
 use super::viewpoint::Viewpoint;
-use crate::render::RenderOptions;
-use crate::solution::Solution;
 use crate::visibility::EngineChoice;
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The folder that `solve` wrote
+    /// The folder that `solve` wrote, or the solution.rad in it
     solution: PathBuf,
     #[command(flatten)]
     viewpoint: Viewpoint,
-    /// Folder for the pictures; the solution's own if this is left out
+    /// Folder for the pictures; the solution's own if this is left out, where they replace those that are there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Who traces the rays: auto, embree, obvhs or brute-force
@@ -26,25 +25,15 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
-    let solution = Solution::read(&arguments.solution.join(SOLUTION))?;
+    leave_nothing_on_interrupt();
+    let solution = read_solution(&arguments.solution)?;
     let cameras = arguments.viewpoint.of(&solution.cameras)?;
     let lit = solution.lit_mesh();
-    let folder = arguments.output.as_ref().unwrap_or(&arguments.solution);
-    let several = cameras.len() > 1;
+    let beside = || folder_of(&arguments.solution);
+    let folder = arguments.output.clone().unwrap_or_else(beside);
     for (number, camera) in cameras.iter().enumerate() {
-        let into = if several && number > 0 {
-            folder.join(&camera.name)
-        } else {
-            folder.clone()
-        };
-        draw(
-            &lit,
-            camera,
-            &RenderOptions::standard(),
-            arguments.engine,
-            0,
-            &into,
-        )?;
+        let into = picture_folder(&folder, number, camera);
+        draw(&lit, camera, (arguments.engine, 0), &into, &|| true)?;
     }
     Ok(Code::Success)
 }

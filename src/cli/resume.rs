@@ -5,9 +5,11 @@ use super::error::Code;
 use super::flags::SolveFlags;
 use super::memory::hold_less;
 use super::progress::catch_interrupts;
-use super::session::{CHECKPOINT, Session};
-use super::solve::{How, SOLUTION, engine_of, prepare, warn, warn_of_another_engine};
-use crate::scene::Scene;
+use super::results::{CHECKPOINT, SOLUTION, inputs, spare};
+use super::say;
+use super::session::Session;
+use super::solve::{How, engine_of, prepare, warn_of_another_engine};
+use crate::scene::NamedScene;
 use crate::solution::Solution;
 use crate::{Run, Settings, Target};
 use clap::Args;
@@ -44,15 +46,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let watching = arguments.how.begin()?;
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     hold_less(solution.mesh.patches.len());
-    let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
+    let scene = arguments.scene.as_deref().map(NamedScene::load_lit);
+    let scene = scene.transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
+    let known = solution.report.scene_file.iter();
+    let mut files: Vec<PathBuf> = known.flat_map(|file| inputs(file, file)).collect();
+    if let (Some(file), Some(scene)) = (&arguments.scene, &scene) {
+        files.extend(inputs(file, &scene.names.file));
+    }
+    spare(&files, output, &arguments.how, &solution.cameras)?;
+    let settings = settings(&solution, arguments)?;
     prepare(output)?;
     catch_interrupts();
     let before = solution.report.clone();
-    let settings = settings(&solution, arguments)?;
     let mut run = Run::resume(solution, settings)?;
-    if let Some(scene) = scene {
-        warn(&scene);
+    let known_warnings = run.solution().report.warnings.len();
+    if let Some(NamedScene { scene, .. }) = scene {
+        say::warnings(&scene.warnings);
         run.relight(scene)?;
         let file = arguments.scene.as_deref();
         run.report_mut().scene_file = file.and_then(|file| absolute(file).ok());
@@ -66,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         output,
         how: &arguments.how,
         started,
-        known_warnings: before.warnings.len(),
+        known_warnings,
     };
     session.complete(run, watching)
 }
@@ -99,7 +109,7 @@ fn settings(solution: &Solution, arguments: &Arguments) -> Result<Settings, CliE
     };
     Ok(Settings {
         options: flags.over(report.options.clone())?,
-        target: flags.target()?.or(known.transpose()?),
+        target: flags.with_estimate(flags.target()?.or(known.transpose()?))?,
         engine,
         threads: arguments.how.threads,
     })

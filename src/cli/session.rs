@@ -4,20 +4,19 @@ use super::CliError;
 use super::error::Code;
 use super::profile::profile;
 use super::progress::{Look, Watch, is_due, is_interrupted};
+use super::results::{CHECKPOINT, SOLUTION};
 use super::say::{self, is_quiet};
-use super::solve::{How, SOLUTION, summary, write_beside};
+use super::solve::{How, summary, write_beside};
 use crate::Run;
 use crate::output::write_atomically;
+use crate::render::View;
 use crate::solution::Solution;
-use crate::solver::{MeshingEnd, StopReason};
+use crate::solver::StopReason;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 #[cfg(feature = "viewer")]
 pub(super) use super::window::Watching;
-
-/// The state of a run that has not ended; `radiosity resume` reads it.
-pub(super) const CHECKPOINT: &str = "checkpoint.rad";
 
 /// Who looks on sees no more than this often what has become of the light.
 const FRAME: Duration = Duration::from_millis(100);
@@ -68,6 +67,7 @@ impl Session<'_> {
 
     /// The same, before an audience. What it sees does not change what is computed.
     pub fn finish(&self, mut run: Run, audience: Option<&dyn Audience>) -> Result<Code, CliError> {
+        run.reserve(self.pictures(run.solution()))?;
         let look = self.how.look();
         let mut bar = Watch::new(run.solution().report.options.tolerance, look);
         if let Some(interval) = self.how.checkpoint {
@@ -126,6 +126,12 @@ impl Session<'_> {
         })
     }
 
+    /// Memory for the largest of the pictures, bytes.
+    fn pictures(&self, of: &Solution) -> u64 {
+        let drawn = of.cameras.iter().filter(|_| !self.how.no_pictures);
+        drawn.map(View::bytes_for).max().unwrap_or(0)
+    }
+
     /// The end for a program.
     fn done(&self, solution: &Solution) -> Result<serde_json::Value, CliError> {
         let report = serde_json::to_value(&solution.report);
@@ -146,25 +152,6 @@ impl Session<'_> {
         let report = &solution.report;
         let known = self.known_warnings.min(report.warnings.len());
         say::warnings(&report.warnings[known..]);
-        if let Some(end) = report.meshing_ended {
-            let limit = match end {
-                MeshingEnd::MaxElements => "--max-elements",
-                MeshingEnd::MemoryLimit => "--memory-limit",
-            };
-            say::warning(&format!(
-                "{limit} ended the refinement after {} shots, at {} elements",
-                report.meshing_shots, report.elements
-            ));
-        }
-        let missed = report.target.as_ref().filter(|t| !t.reached);
-        if let (Some(target), true) = (missed, report.stop_reason != StopReason::NoEmitter) {
-            let plural = if target.rounds == 1 { "" } else { "s" };
-            say::warning(&format!(
-                "the error of {}% was not reached in {} solve{plural}",
-                100.0 * target.n_rms,
-                target.rounds
-            ));
-        }
     }
 }
 

@@ -3,30 +3,28 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
-use super::memory::{load_scene, peak_memory};
+use super::memory::{load_with_file, peak_memory};
 use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
-use super::progress::{Look, catch_interrupts};
+use super::progress::{Look, catch_interrupts, is_interrupted};
+use super::results::{PAGE, REPORT, SOLUTION, inputs, mesh_file, picture_folder, spare};
 use super::say;
 use super::session::{Session, Watching};
-use super::values::{duration, threads};
+use super::values::{interval, threads};
 use crate::output::{
     History, Page, SummaryRow, remove_abandoned, summary_table, write_atomically, write_html,
 };
 use crate::radiometry::WHITE_EFFICACY;
-use crate::render::{RenderOptions, Tone};
-use crate::scene::Scene;
+use crate::render::Tone;
 use crate::solution::{LitMesh, Report, Solution};
 use crate::solver::StopReason;
 use crate::visibility::EngineChoice;
+use crate::words::counted;
 use crate::{Run, Settings};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// The solution file that the other commands read.
-pub(super) const SOLUTION: &str = "solution.rad";
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -76,7 +74,7 @@ pub(super) struct How {
     #[arg(short, long)]
     quiet: bool,
     /// Save the state at the start and then at these intervals (60 s if no TIME is given), for `radiosity resume`
-    #[arg(long, value_name = "TIME", value_parser = duration, num_args = 0..=1, default_missing_value = "60")]
+    #[arg(long, value_name = "TIME", value_parser = interval, num_args = 0..=1, default_missing_value = "60")]
     pub checkpoint: Option<Duration>,
 }
 
@@ -99,22 +97,25 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
     let watching = arguments.how.begin()?;
     let model = arguments.from.as_deref().map(read_report).transpose()?;
+    let flags = &arguments.flags;
+    let target = flags.target()?;
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
-    let scene = load_scene(file)?;
+    let (scene, geometry) = load_with_file(file)?;
     let load = started.elapsed().as_secs_f64();
-    warn(&scene);
+    say::warnings(&scene.warnings);
+    let files = inputs(file, &geometry);
+    spare(&files, &arguments.output, &arguments.how, &scene.cameras)?;
     prepare(&arguments.output)?;
     catch_interrupts();
-    let flags = &arguments.flags;
     let (options, engine) = match &model {
         Some(model) => (flags.over(model.options.clone())?, engine_of(model)?),
         None => (flags.options()?, EngineChoice::Auto),
     };
     let settings = Settings {
         options,
-        target: flags.target()?,
+        target,
         engine: arguments.how.engine.unwrap_or(engine),
         threads: arguments.how.threads,
     };
@@ -123,8 +124,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let report = run.report_mut();
     report.seconds.load = load;
     report.scene_file = std::path::absolute(file).ok();
-    if let Some(model) = model.filter(|model| model.engine != report.engine) {
-        warn_of_another_engine(&model, report);
+    if let Some(model) = &model {
+        warn_of_the_model(model, report);
     }
     let session = Session {
         output: &arguments.output,
@@ -152,6 +153,29 @@ pub(super) fn engine_of(report: &Report) -> Result<EngineChoice, CliError> {
     name.parse().map_err(|e| CliError::Input(format!("{e}")))
 }
 
+/// Says why this solve may not be that of its report.
+fn warn_of_the_model(model: &Report, now: &Report) {
+    let ended_by = match model.stop_reason {
+        StopReason::TimeLimit => Some("the time limit"),
+        StopReason::Interrupted => Some("an interruption"),
+        _ => None,
+    };
+    if let Some(what) = ended_by {
+        say::warning(&format!(
+            "the solve of the report was ended by {what}: this one may go further"
+        ));
+    }
+    if !model.resumed_with.is_empty() {
+        say::warning(&format!(
+            "the solve of the report was taken up again with {}: this one begins with what it ended with, and results will differ",
+            model.resumed_with.join(", ")
+        ));
+    }
+    if model.engine != now.engine {
+        warn_of_another_engine(model, now);
+    }
+}
+
 /// The bits depend on the engine's version and instruction set.
 pub(super) fn warn_of_another_engine(then: &Report, now: &Report) {
     let name = |of: &Report| {
@@ -165,13 +189,6 @@ pub(super) fn warn_of_another_engine(then: &Report, now: &Report) {
         name(then),
         name(now)
     ));
-}
-
-pub(super) fn warn(scene: &Scene) {
-    say::warnings(&scene.warnings);
-    if !scene.materials.iter().any(|m| m.emits()) {
-        say::warning("no surface emits light; everything will be black");
-    }
 }
 
 /// Bytes that a folder must have room for before a solve begins.
@@ -199,22 +216,39 @@ pub(super) fn write_beside(
     how: &How,
     history: &History,
 ) -> Result<(), CliError> {
+    // First of all, so that it is there whatever may fail below; and once more when the time that writing took is known.
+    write_report(&solution.report, folder)?;
+    // Who interrupts the solve gets pictures of what there is; who interrupts these does not want them.
+    let before = is_interrupted();
+    let wanted = || before || !is_interrupted();
+    let mut drawn = false;
     if !how.formats.0.is_empty() || !how.no_pictures {
-        write_lit(solution, &solution.lit_mesh(), folder, how)?;
+        drawn = write_lit(solution, &solution.lit_mesh(), folder, how, &wanted)?;
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
     solution.report.peak_memory = peak_memory();
-    let report =
-        serde_json::to_vec_pretty(&solution.report).map_err(|e| CliError::System(e.to_string()))?;
-    write_atomically(&folder.join("report.json"), |out| out.write_all(&report))?;
+    write_report(&solution.report, folder)?;
     if !how.no_html {
-        write_page(solution, folder, how, history)?;
+        write_page(solution, folder, how, history, drawn)?;
     }
     Ok(())
 }
 
-/// The meshes that were asked for, and the pictures.
-fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Result<(), CliError> {
+/// `report.json`.
+fn write_report(report: &Report, folder: &Path) -> Result<(), CliError> {
+    let text = serde_json::to_vec_pretty(report).map_err(|e| CliError::System(e.to_string()))?;
+    write_atomically(&folder.join(REPORT), |out| out.write_all(&text))?;
+    Ok(())
+}
+
+/// The meshes that were asked for, and the pictures while they are wanted; whether there are those of the first camera.
+fn write_lit(
+    solution: &Solution,
+    lit: &LitMesh,
+    folder: &Path,
+    how: &How,
+    wanted: &(dyn Fn() -> bool + Sync),
+) -> Result<bool, CliError> {
     let exporter = Exporter {
         solution,
         lit,
@@ -222,58 +256,49 @@ fn write_lit(solution: &Solution, lit: &LitMesh, folder: &Path, how: &How) -> Re
         efficacy: WHITE_EFFICACY,
     };
     for format in &how.formats.0 {
-        let name = format!("solution.{}", format.extension());
-        exporter.write(*format, &folder.join(name))?;
+        exporter.write(*format, &folder.join(mesh_file(*format)))?;
     }
     if how.no_pictures {
-        return Ok(());
+        return Ok(false);
     }
+    let engine = (how.engine.unwrap_or_default(), how.threads);
     for (number, camera) in solution.cameras.iter().enumerate() {
-        // The first camera's pictures lie in the folder itself, those of others in a folder of their name.
-        let into = if number == 0 {
-            folder.to_path_buf()
-        } else {
-            folder.join(&camera.name)
-        };
-        draw(
-            lit,
-            camera,
-            &RenderOptions::standard(),
-            how.engine.unwrap_or_default(),
-            how.threads,
-            &into,
-        )?;
+        let into = picture_folder(folder, number, camera);
+        if !draw(lit, camera, engine, &into, wanted)? {
+            return Ok(number > 0);
+        }
     }
-    Ok(())
+    Ok(true)
 }
 
-/// `report.html`, with the first camera's pictures.
+/// `report.html`, with the first camera's pictures if they were drawn.
 fn write_page(
     solution: &Solution,
     folder: &Path,
     how: &How,
     history: &History,
+    drawn: bool,
 ) -> Result<(), CliError> {
     let camera = solution.cameras.first().map_or("", |camera| &camera.name);
     let mut pictures = Vec::new();
     for (file, what) in [("shaded.png", "light"), ("mesh.png", "mesh")] {
-        if !how.no_pictures {
+        if drawn {
             let path = folder.join(file);
             let refused = |e| CliError::System(format!("cannot read {}: {e}", path.display()));
             let png = std::fs::read(&path).map_err(refused)?;
             pictures.push((format!("{camera}: {what}"), png));
         }
     }
-    let mut files = vec![SOLUTION.to_owned(), "report.json".to_owned()];
+    let mut files = vec![SOLUTION.to_owned(), REPORT.to_owned()];
     let meshes = how.formats.0.iter();
-    files.extend(meshes.map(|format| format!("solution.{}", format.extension())));
+    files.extend(meshes.map(|format| mesh_file(*format)));
     let page = Page {
         report: &solution.report,
         history,
         pictures: &pictures,
         files: &files,
     };
-    Ok(write_html(&folder.join("report.html"), &page)?)
+    Ok(write_html(&folder.join(PAGE), &page)?)
 }
 
 /// The paper's Table 1 for this solve, and what the table leaves out.
@@ -297,37 +322,31 @@ pub(super) fn summary(solution: &Solution, seconds: f64) -> String {
             0.0
         }
     };
-    let why = match report.stop_reason {
-        StopReason::Converged => "converged",
-        StopReason::MaxShots => "stopped at the largest number of shots",
-        StopReason::TimeLimit => "stopped at the time limit",
-        StopReason::Interrupted => "interrupted",
-        StopReason::NoEmitter => "nothing emits",
-    };
+    let why = report.ended();
     let estimate = report.audit.map_or(String::new(), |audit| {
         format!(
-            "estimated error of the irradiance: {:.2}% nRMS, of it {:+.2}% bias, at {} points\n",
+            "estimated error of the irradiance: {:.2}% nRMS, of it {:+.2}% bias, at {}\n",
             100.0 * audit.n_rms,
             100.0 * audit.bias,
-            audit.points
+            counted(audit.points, "point", "points")
         )
     });
     format!(
         "{}{why}: {} emitted = {:.2}% absorbed + {:.2}% escaped + {:.2}% unshot + {:.2}% residual\n\
-         {estimate}{} vertices, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {} threads\n",
+         {estimate}{}, {:.2} million rays at {:.1} million/s by {} {} ({}, {} wide), {}\n",
         summary_table(&[row]),
         say::watts(power.emitted),
         percent(power.absorbed),
         percent(power.escaped),
         percent(power.unshot),
         percent(power.residual),
-        report.vertices,
+        counted(report.vertices, "vertex", "vertices"),
         report.rays as f64 / 1e6,
         report.rays as f64 / 1e6 / report.seconds.solve.max(1e-9),
         report.engine.name,
         report.engine.version,
         report.engine.isa,
         report.engine.packet_width,
-        report.threads,
+        counted(report.threads, "thread", "threads"),
     )
 }

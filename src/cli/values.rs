@@ -10,13 +10,16 @@ pub(super) fn named<T: DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|e| e.to_string())
 }
 
-/// A fraction, or a percentage with its sign.
+/// A fraction, or a percentage with its sign. A number of 1 or more without it is most often a forgotten one.
 pub(super) fn error(text: &str) -> Result<f64, String> {
     let expected = "an error such as 1% or 0.01";
     let allowed = |x: f64| x > 0.0;
-    match text.strip_suffix('%') {
-        Some(percent) => number(percent.trim_end(), allowed, expected).map(|x| x / 100.0),
-        None => number(text, allowed, expected),
+    if let Some(percent) = text.strip_suffix('%') {
+        return number(percent.trim_end(), allowed, expected).map(|x| x / 100.0);
+    }
+    match number(text, allowed, expected)? {
+        fraction if fraction < 1.0 => Ok(fraction),
+        _ => Err(format!("expected {expected}; did you mean {text}%?")),
     }
 }
 
@@ -25,6 +28,13 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
     let seconds = with_unit(text, &units, "a duration such as 90, 90s, 15m or 2h")?;
     Ok(Duration::from_secs_f64(seconds))
+}
+
+/// A duration after a flag that may stand alone: what follows it may have been meant for something else.
+pub(super) fn interval(text: &str) -> Result<Duration, String> {
+    duration(text).map_err(|expected| {
+        format!("{expected}; if it is the scene or folder, name it before the flag, or write --checkpoint=60s")
+    })
 }
 
 /// A number of threads. More than this are a slip of the hand, and starting them may fail halfway.
@@ -55,6 +65,8 @@ pub(super) fn png(text: &str) -> Result<PathBuf, String> {
 /// Bytes, or a number with a unit.
 pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let units = [
+        ("TiB", 1099511627776.0),
+        ("TB", 1e12),
         ("KiB", 1024.0),
         ("MiB", 1048576.0),
         ("GiB", 1073741824.0),
@@ -92,8 +104,26 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |v| v > 0.0 && v < 1e9, "a positive number")
 }
 
+/// A field of view.
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
+    let expected = "an angle between 0 and 180 degrees";
+    number(text, |v| v > 0.0 && v < 180.0, expected)
+}
+
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |v| v >= 0.0, "a number, 0 or more")
+}
+
+/// A difference of visibility indices that is one.
+pub(super) fn index(text: &str) -> Result<f64, String> {
+    let expected = "a number above 0, up to 1";
+    number(text, |v| v > 0.0 && v <= 1.0, expected)
+}
+
+/// Below which form factors are left out. None is above 1.
+pub(super) fn cut_off(text: &str) -> Result<f64, String> {
+    let expected = "a number from 0 to less than 1";
+    number(text, |v| (0.0..1.0).contains(&v), expected)
 }
 
 pub(super) fn fraction(text: &str) -> Result<f64, String> {
@@ -115,6 +145,18 @@ mod tests {
     }
 
     #[test]
+    fn an_error_of_one_or_more_needs_its_sign() {
+        assert_eq!(error("1%"), Ok(0.01));
+        assert_eq!(error("0.5"), Ok(0.5));
+        assert_eq!(error("150 %"), Ok(1.5));
+        let refused = error("1").expect_err("is 100 %");
+        assert!(refused.ends_with("did you mean 1%?"), "{refused}");
+        for wrong in ["0", "0%", "-1%", "%", "inf"] {
+            assert!(error(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn durations_and_sizes_have_units() {
         let seconds = |text| duration(text).map(|d| d.as_secs_f64());
         assert_eq!(seconds("90"), Ok(90.0));
@@ -122,6 +164,8 @@ mod tests {
         assert_eq!(seconds("2 h"), Ok(7200.0));
         assert_eq!(bytes("2GiB"), Ok(2 << 30));
         assert_eq!(bytes("500mb"), Ok(500_000_000));
+        assert_eq!(bytes("1.5TB"), Ok(1_500_000_000_000));
+        assert_eq!(bytes("1TiB"), Ok(1 << 40));
         assert_eq!(bytes("4096"), Ok(4096));
         for wrong in ["", "s", "-1s", "0", "1d", "inf", "1 e", "é"] {
             assert!(duration(wrong).is_err() && bytes(wrong).is_err(), "{wrong}");

@@ -1,7 +1,7 @@
 //! From where, which way up, with what field of view, how large and how bright: the flags of `render` and `view`.
 
 use super::CliError;
-use super::values::finite;
+use super::values::{degrees, finite};
 use crate::scene::Camera;
 use clap::Args;
 use glam::DVec3;
@@ -21,7 +21,7 @@ pub(super) struct Viewpoint {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// Horizontal field of view, in degrees
-    #[arg(long, value_name = "DEGREES")]
+    #[arg(long, value_name = "DEGREES", value_parser = degrees)]
     fov: Option<f64>,
     /// Width in pixels
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=16384))]
@@ -48,7 +48,7 @@ impl Viewpoint {
                 .collect::<Vec<_>>()
                 .join(", ");
             let asked = self.camera.as_deref().unwrap_or_default();
-            return Err(CliError::Input(format!(
+            return Err(CliError::Usage(format!(
                 "no camera is named `{asked}`; there are: {known}"
             )));
         }
@@ -73,14 +73,8 @@ impl Viewpoint {
             ..camera.clone()
         };
         let sight = adjusted.look_at - adjusted.eye;
-        if !(adjusted.horizontal_fov > 0.0 && adjusted.horizontal_fov < 180.0) {
-            return Err(CliError::Input(format!(
-                "a field of view of {} degrees; expected one between 0 and 180",
-                adjusted.horizontal_fov
-            )));
-        }
         if sight.cross(adjusted.up).length() <= 1e-9 * sight.length() * adjusted.up.length() {
-            return Err(CliError::Input(
+            return Err(CliError::Usage(
                 "the camera looks along its up direction (--up names another), or at its own eye"
                     .into(),
             ));

@@ -4,9 +4,9 @@ use super::CliError;
 use super::error::Code;
 use super::names::names_of;
 use super::progress::{Look, is_interrupted};
+use super::results::read_solution;
 use super::say::{self, is_quiet};
 use super::session::{Audience, Session};
-use super::solve::SOLUTION;
 use super::view::Arguments;
 use crate::Run;
 use crate::radiometry::WHITE_EFFICACY;
@@ -56,11 +56,7 @@ impl Shown {
                 exhibit,
             });
         }
-        let file = match path.is_file() {
-            true => path.to_path_buf(),
-            false => path.join(SOLUTION),
-        };
-        let solution = Solution::read(&file)?;
+        let solution = read_solution(path)?;
         let labels = Labels::of(&solution, names_of(&solution));
         Ok(Self {
             name: solution.report.scene.clone(),

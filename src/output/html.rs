@@ -5,6 +5,7 @@ use super::plot::Plot;
 use super::{WriteError, write_atomically};
 use crate::codec::base64;
 use crate::solution::{PowerReport, Report};
+use crate::words::{counted, rounded};
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
@@ -104,7 +105,7 @@ impl Page<'_> {
         let engine = &report.engine;
         let rate = report.rays as f64 / 1e6 / seconds.solve.max(1e-9);
         let rows = [
-            ("ended", serde_name(&report.stop_reason)),
+            ("ended", report.ended().to_owned()),
             (
                 "shots",
                 format!(
@@ -115,19 +116,19 @@ impl Page<'_> {
             (
                 "mesh",
                 format!(
-                    "{} input polygons, {} patches, {} elements to level {}, {} vertices",
-                    report.input_patches,
-                    report.patches,
-                    report.elements,
+                    "{}, {}, {} to level {}, {}",
+                    counted(report.input_patches, "input polygon", "input polygons"),
+                    counted(report.patches, "patch", "patches"),
+                    counted(report.elements, "element", "elements"),
                     report.max_depth,
-                    report.vertices
+                    counted(report.vertices, "vertex", "vertices")
                 ),
             ),
             (
                 "time",
                 format!(
                     "{:.2} s solving (shooting {:.2}, refining {:.2}, gathering {:.2}, estimating {:.2}), {:.2} s reading, \
-                     {:.2} s building, on {} threads",
+                     {:.2} s building, on {}",
                     seconds.solve,
                     seconds.parts.shooting,
                     seconds.parts.refining,
@@ -135,7 +136,7 @@ impl Page<'_> {
                     seconds.parts.estimating,
                     seconds.load,
                     seconds.build,
-                    report.threads
+                    counted(report.threads, "thread", "threads")
                 ),
             ),
             (
@@ -149,6 +150,7 @@ impl Page<'_> {
                     engine.packet_width
                 ),
             ),
+            ("taken up again with", report.resumed_with.join(", ")),
             ("files", self.files.join(", ")),
         ];
         let rows = rows.iter().filter(|(_, value)| !value.is_empty());
@@ -203,9 +205,9 @@ impl Page<'_> {
                     unshot: channels.unshot[number],
                     residual: channels.residual[number],
                 };
-                format!("{:.6}", of(&one))
+                rounded(of(&one), 6)
             };
-            let [watts, share] = [format!("{:.6}", of(sum)), format!("{share:.2} %")];
+            let [watts, share] = [rounded(of(sum), 6), rounded(share, 2) + " %"];
             let [r, g, b] = [0, 1, 2].map(channel);
             html += &row(&[name, &watts, &share, &r, &g, &b], &[1, 2, 3, 4, 5]);
         }
@@ -338,11 +340,6 @@ fn thinned(history: &[Moment]) -> Vec<&Moment> {
     let mut kept: Vec<&Moment> = history.iter().step_by(step).collect();
     kept.extend(history.last().filter(|last| kept.last() != Some(last)));
     kept
-}
-
-/// A name as reports in JSON show it.
-fn serde_name(value: &impl serde::Serialize) -> String {
-    plain(&serde_json::to_value(value).unwrap_or_default())
 }
 
 fn plain(value: &serde_json::Value) -> String {

@@ -4,6 +4,7 @@ mod measure;
 mod report;
 mod run;
 mod target;
+mod warnings;
 
 pub use measure::irradiance_at;
 pub use run::Run;
@@ -14,6 +15,7 @@ use crate::solution::Solution;
 use crate::solver::{Observer, Options};
 use crate::threads::ThreadsError;
 use crate::visibility::{EngineChoice, VisibilityError};
+use crate::words::size;
 use thiserror::Error;
 
 /// How a scene is solved.
@@ -44,21 +46,33 @@ pub enum SolveError {
     /// The scene is not the one that was solved, but for what its surfaces emit.
     #[error("a solve can go on with other emitters, not with another scene: {0}")]
     OtherScene(String),
-    /// Already the coarsest mesh exceeds the memory limit.
+    /// Already the coarsest mesh, with what is to be drawn of it, exceeds the memory limit.
     #[error(
-        "{elements} elements before any refinement need about {needed} MiB, where {limit} may be used"
+        "{elements} elements before any refinement{} need about {}, where {} may be used (--memory-limit)",
+        drawn(*.pictures, *.limit),
+        size(*.needed, *.limit),
+        size(*.limit, *.limit)
     )]
     TooLarge {
         /// Leaves of the coarsest mesh.
         elements: usize,
-        /// What the run would take, MiB.
+        /// The part of the pictures, bytes.
+        pictures: u64,
+        /// What the run would take, bytes.
         needed: u64,
-        /// What it may take, MiB.
+        /// What it may take, bytes.
         limit: u64,
     },
     /// An option that a target fixes is none.
     #[error("{0}")]
     Option(String),
+}
+
+fn drawn(pictures: u64, limit: u64) -> String {
+    match pictures {
+        0 => String::new(),
+        _ => format!(" and a picture of {}", size(pictures, limit)),
+    }
 }
 
 /// Solves `scene`; `observer` hears of the progress and may stop it. The same settings on the same instruction set give the same

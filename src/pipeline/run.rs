@@ -1,6 +1,7 @@
 //! A solve that can be left and taken up again.
 
-use super::report::{blank, take_in, warn_at_end};
+use super::report::{blank, take_in};
+use super::warnings::{forget_the_end, warn_at_end};
 use super::{Settings, SolveError};
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Spectrum, exitance_from_radiance};
@@ -11,6 +12,7 @@ use crate::solver::{
 };
 use crate::threads::pool;
 use crate::visibility::{Clocked, EngineChoice, Visibility, VisibilityError, build_within};
+use crate::words::counted;
 use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
@@ -26,6 +28,8 @@ pub struct Run {
     time_limit: Option<Duration>,
     /// What counts against the time limit.
     spent: Duration,
+    /// Memory that is not for the solve, bytes.
+    reserved: u64,
 }
 
 impl Run {
@@ -41,7 +45,7 @@ impl Run {
         let threads = pool.current_num_threads();
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
         let (visibility, engine) = engine(&scene, &mesh, (settings.engine, threads), &options)?;
-        check_memory(&mesh, visibility.as_ref(), &options)?;
+        check_memory(&mesh, visibility.as_ref(), &options, 0)?;
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
         report.target = target;
@@ -52,6 +56,7 @@ impl Run {
             pool,
             time_limit,
             spent: Duration::ZERO,
+            reserved: 0,
         };
         run.begin(scene, mesh, report);
         let seconds = &mut run.report_mut().seconds;
@@ -67,6 +72,7 @@ impl Run {
             return Err(SolveError::NotKept);
         };
         let report = &mut solution.report;
+        forget_the_end(report);
         let mut options = settings.options;
         let known = report.target.take();
         if let Some(target) = &settings.target {
@@ -79,6 +85,7 @@ impl Run {
         }
         if differs(&options, &report.options) {
             continuation.course.reopen();
+            note(report, "other options");
         }
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
@@ -93,6 +100,9 @@ impl Run {
             options,
             threads,
         );
+        if report.engine != now.engine {
+            note(report, "another engine");
+        }
         (report.engine, report.threads) = (now.engine, now.threads);
         report.options = now.options;
         report.seconds.build += started.elapsed().as_secs_f64();
@@ -103,7 +113,22 @@ impl Run {
             pool,
             time_limit,
             spent: Duration::ZERO,
+            reserved: 0,
         })
+    }
+
+    /// Keeps so many bytes of the memory limit for pictures.
+    ///
+    /// # Errors
+    /// When there is not room for them and the coarsest mesh. One that has been refined stays as it is.
+    pub fn reserve(&mut self, pictures: u64) -> Result<(), SolveError> {
+        let solution = self.solution();
+        let options = &solution.report.options;
+        if solution.report.shots == 0 {
+            check_memory(&solution.mesh, self.visibility.as_ref(), options, pictures)?;
+        }
+        self.reserved = pictures;
+        Ok(())
     }
 
     /// Goes on until there is a reason to stop.
@@ -181,6 +206,9 @@ impl Run {
         } else {
             known.course.reopen();
         }
+        if known.scene.materials != scene.materials {
+            note(&mut solution.report, "other emitters");
+        }
         known.scene = scene;
         Ok(())
     }
@@ -214,6 +242,8 @@ impl Run {
         let mut report = solution.report;
         let mut options = report.options.clone();
         options.time_limit = self.time_limit;
+        let for_the_solve = |limit: u64| limit.saturating_sub(self.reserved);
+        options.memory_limit = options.memory_limit.map(for_the_solve);
         let state = (solution.mesh, solution.light, course);
         let clocked = Clocked::new(self.visibility.as_ref());
         let spent = self.spent;
@@ -276,18 +306,20 @@ fn check_memory(
     mesh: &Mesh,
     visibility: &dyn Visibility,
     options: &Options,
+    pictures: u64,
 ) -> Result<(), SolveError> {
     let Some(limit) = options.memory_limit else {
         return Ok(());
     };
-    let needed = memory_for(mesh, options, visibility.info().bytes);
+    let needed = memory_for(mesh, options, visibility.info().bytes) + pictures;
     if needed <= limit {
         return Ok(());
     }
     Err(SolveError::TooLarge {
         elements: mesh.leaves().count(),
-        needed: needed >> 20,
-        limit: limit >> 20,
+        pictures,
+        needed,
+        limit,
     })
 }
 
@@ -302,6 +334,14 @@ fn check_emitters(scene: &Scene, mesh: &Mesh) -> Result<(), SolveError> {
         lost => Err(SolveError::OtherScene(format!(
             "{lost} of them lie in the plane of other surfaces and were left out when nothing shone there"
         ))),
+    }
+}
+
+/// Notes what a solve goes on with, if it is not what it began with.
+fn note(report: &mut Report, with: &str) {
+    if report.shots > 0 {
+        let after = counted(report.shots, "shot", "shots");
+        report.resumed_with.push(format!("{with} after {after}"));
     }
 }
 

@@ -23,6 +23,12 @@ pub struct View {
 }
 
 impl View {
+    /// Memory that the pictures of a camera take until they are written, about: the view's own, the radiance, and what writing it holds.
+    pub fn bytes_for(camera: &Camera) -> u64 {
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        pixels * (size_of::<Pixel>() + 2 * size_of::<[f32; 4]>()) as u64
+    }
+
     /// Looks at `mesh` through `camera`.
     ///
     /// `build` makes the engine that answers who is nearest among the given triangles; it is not called where no

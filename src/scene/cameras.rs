@@ -43,7 +43,7 @@ fn judge(described: &CameraSettings, axis: UpAxis) -> Result<Camera, (String, St
     if !names_a_file(&described.name) {
         return fault(
             "such a name".to_owned(),
-            "a name that can be part of a file's",
+            "one for a folder beside the results: no path, none of their names, 255 bytes at most",
         );
     }
     let eye = point("eye", described.eye)?;
@@ -91,10 +91,33 @@ fn judge(described: &CameraSettings, axis: UpAxis) -> Result<Camera, (String, St
     })
 }
 
-/// Camera names become part of the pictures' file names.
+/// The longest name of a file, in bytes, that all common file systems take.
+pub(super) const LONGEST_NAME: usize = 255;
+
+/// Names of results, among which the folders of the cameras lie.
+const RESULTS: [&str; 12] = [
+    "solution.rad",
+    "checkpoint.rad",
+    "solution.glb",
+    "solution.obj",
+    "solution.ply",
+    "solution.vtu",
+    "report.json",
+    "report.html",
+    "shaded.exr",
+    "shaded.png",
+    "mesh.png",
+    "wireframe.png",
+];
+
+/// Whether there can be a folder of that name for a camera's pictures, beside the other results.
 pub(super) fn names_a_file(name: &str) -> bool {
     let forbidden = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
-    !name.trim().is_empty() && !name.starts_with('.') && !name.contains(forbidden)
+    !name.trim().is_empty()
+        && !name.starts_with('.')
+        && !name.contains(forbidden)
+        && name.len() <= LONGEST_NAME
+        && !RESULTS.iter().any(|taken| taken.eq_ignore_ascii_case(name))
 }
 
 fn point(key: &str, coordinates: [f64; 3]) -> Result<DVec3, (String, String)> {

@@ -154,6 +154,7 @@ impl From<ReportThen> for Report {
             audit: then.audit,
             target: then.target.map(TargetReport::from),
             options: then.options.into(),
+            resumed_with: Vec::new(),
             warnings: then.warnings,
         }
     }

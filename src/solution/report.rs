@@ -57,6 +57,10 @@ pub struct Report {
     pub target: Option<TargetReport>,
     /// Every option in force.
     pub options: Options,
+    /// What changed when the solve was taken up again, and after how many shots; if anything did, the options alone do not give this
+    /// solution.
+    #[serde(default)]
+    pub resumed_with: Vec<String>,
     /// What was suspicious in the input.
     pub warnings: Vec<String>,
 }
@@ -66,6 +70,19 @@ fn as_text<S: Serializer>(path: &Option<PathBuf>, serializer: S) -> Result<S::Ok
     path.as_ref()
         .map(|path| path.to_string_lossy())
         .serialize(serializer)
+}
+
+impl Report {
+    /// Why the solve ended, in words.
+    pub fn ended(&self) -> &'static str {
+        match self.stop_reason {
+            StopReason::Converged => "converged",
+            StopReason::MaxShots => "stopped at the largest number of shots",
+            StopReason::TimeLimit => "stopped at the time limit",
+            StopReason::Interrupted => "interrupted",
+            StopReason::NoEmitter => "nothing emits",
+        }
+    }
 }
 
 /// What became of `--target-error`.

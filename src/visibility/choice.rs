@@ -1,6 +1,7 @@
 //! Which engine answers, and what can go wrong while it is built.
 
 use super::{BruteForce, Isa, Obvhs, Triangles, Visibility};
+use crate::words::size;
 use glam::Vec3;
 use std::fmt;
 use std::str::FromStr;
@@ -89,13 +90,17 @@ pub enum VisibilityError {
     #[error("{0} triangles are more than can be traced (2³¹ - 1)")]
     TooManyTriangles(usize),
     /// The engine's structure does not fit into the memory that it may take.
-    #[error("tracing {triangles} triangles takes {needed} MiB, where {limit} may be used")]
+    #[error(
+        "tracing {triangles} triangles takes {}, where {} may be used (--memory-limit)",
+        size(*.needed, *.limit),
+        size(*.limit, *.limit)
+    )]
     TooLarge {
         /// Their number.
         triangles: usize,
-        /// What their structure takes, MiB.
+        /// What their structure takes, bytes.
         needed: u64,
-        /// What it may take, MiB.
+        /// What it may take, bytes.
         limit: u64,
     },
     /// Embree was asked for, but the program was built without it.
@@ -159,8 +164,8 @@ fn build_obvhs(
     if let Some(limit) = memory.filter(|limit| needed > *limit) {
         return Err(VisibilityError::TooLarge {
             triangles: count,
-            needed: needed >> 20,
-            limit: limit >> 20,
+            needed,
+            limit,
         });
     }
     Ok(Box::new(Obvhs::new(triangles)?))

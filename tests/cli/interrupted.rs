@@ -86,3 +86,47 @@ fn end_by(signal: &str) -> TempDir {
     radiosity(&["render", text(&output), "--width", "32", "--height", "32"]).assert_success();
     folder
 }
+
+#[test]
+#[cfg(unix)]
+fn pictures_that_are_interrupted_are_left_out() {
+    let folder = folder();
+    let floor = super::floor(&folder);
+    let mut toml = format!("geometry = \"{}\"\n", "floor.obj");
+    for name in ["first", "second"] {
+        toml +=
+            &format!("[[camera]]\nname = '{name}'\neye = [0.5, 3, 0.4]\nlook_at = [0.5, 0, 0.5]\n");
+        toml += "width = 6000\nheight = 6000\n";
+    }
+    let scene = floor.with_file_name("scene.toml");
+    std::fs::write(&scene, toml).expect("can be written");
+    let output = folder.path().join("solved");
+    let arguments = ["solve", text(&scene), "-o", text(&output)];
+    let child = command()
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("can be started");
+    // Of the meshes the last.
+    let started = Instant::now();
+    while !output.join("solution.vtu").exists() && started.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    let kill = Command::new("sh")
+        .args(["-c", &format!("kill -INT {}", child.id())])
+        .status();
+    assert!(kill.expect("can be started").success());
+    let run: Run = child.wait_with_output().expect("ends").into();
+    assert_eq!(run.code, Some(130), "{}", run.err);
+    let written = super::names(&output);
+    let expected = [
+        "report.html",
+        "report.json",
+        "solution.glb",
+        "solution.ply",
+        "solution.rad",
+        "solution.vtu",
+    ];
+    assert_eq!(written, expected);
+}

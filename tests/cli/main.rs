@@ -1,8 +1,10 @@
 //! The command: what it writes, what it says, and the code with which it ends.
 
 mod damaged;
+mod ended;
 mod exporting;
 mod grids;
+mod heat;
 mod interrupted;
 mod matrices;
 mod pages;

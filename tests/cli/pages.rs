@@ -148,7 +148,7 @@ fn names_are_text_and_warnings_are_counted() {
     radiosity(&solve).assert_success();
     let html = fs::read_to_string(output.join("report.html")).expect("was written");
     assert!(html.contains("<h1>&lt;b&gt;&amp;&quot;</h1>"), "{html}");
-    assert!(html.contains("<h2>Warnings (2)</h2>"), "{html}");
+    assert!(html.contains("<h2>Warnings (3)</h2>"), "{html}");
     let without = [&solve[..], &["--no-html", "--formats", "none"]].concat();
     fs::remove_dir_all(&output).expect("is there");
     radiosity(&without).assert_success();

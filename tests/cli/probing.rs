@@ -112,6 +112,10 @@ fn tables_without_places_are_refused_with_their_line() {
         &["points.csv:2", "2 columns", "expected 6"],
     );
     refused("", &["points.csv:1"]);
+    refused(
+        "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n0,0,0,0,-0,0\n",
+        &["points.csv:3", "normal 0,0,0", "direction"],
+    );
     let points = folder.path().join("points.csv");
     fs::write(&points, b"x,y,z,nx,ny,nz\n0,0,0,0,1,\xff\n").expect("can be written");
     let run = radiosity(&["probe", text(&solved), text(&points)]);
@@ -120,4 +124,29 @@ fn tables_without_places_are_refused_with_their_line() {
     radiosity(&["probe", text(&solved), text(&missing)]).assert_refused(3, &["none.csv"]);
     radiosity(&["probe", text(Path::new("/nowhere")), text(&missing)])
         .assert_refused(3, &["/nowhere/solution.rad"]);
+}
+
+#[test]
+fn both_ways_to_probe_are_told() {
+    for arguments in [
+        &["probe", "out", "--spacing", "1"][..],
+        &["probe", "--help"],
+    ] {
+        let run = radiosity(arguments);
+        let said = run.out + &run.err;
+        for way in ["<SOLUTION> <POINTS>\n", "<SOLUTION> --grid <PLANE>\n"] {
+            let way = format!("radiosity probe [OPTIONS] {way}");
+            assert!(said.contains(&way), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_table_of_points_may_name_threads() {
+    let (folder, solved) = draft("cornell-box");
+    let points = folder.path().join("points.csv");
+    fs::write(&points, POINTS).expect("can be written");
+    let run = radiosity(&["probe", text(&solved), text(&points), "--threads", "1"]);
+    run.assert_success();
+    assert_probed(&run.out);
 }

@@ -122,6 +122,9 @@ fn wrong_usage_ends_with_2() {
         &["--engine", "magic"][..],
         &["--preset", "best"],
         &["--preset", "draft", "--target-error", "1%"],
+        &["--target-error", "1"],
+        &["--audit-points", "0", "--target-error", "1%"],
+        &["--eps-v", "2"],
         &["--eps-d=-1"],
         &["--eps-d", "nan"],
         &["--local-share", "1.5"],
@@ -138,10 +141,80 @@ fn wrong_usage_ends_with_2() {
         let name = flags[0].trim_end_matches("=-1");
         assert!(run.err.contains(name), "{flags:?}: {}", run.err);
     }
+    let eaten = radiosity(&["solve", "--checkpoint", text(&geometry), "-o", output]);
+    assert_eq!(eaten.code, Some(2), "{}", eaten.err);
+    assert!(
+        eaten.err.contains("name it before the flag"),
+        "{}",
+        eaten.err
+    );
     assert_eq!(
         radiosity(&["solve", text(&geometry)]).code,
         Some(2),
         "there is no output"
     );
     assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn a_result_never_replaces_a_file_of_the_scene() {
+    let folder = folder();
+    let lit = folder.path().join("lit");
+    fs::create_dir(&lit).expect("can be made");
+    let floor = super::floor(&folder);
+    let obj = fs::read_to_string(floor).expect("was written");
+    fs::write(lit.join("solution.obj"), &obj).expect("can be written");
+    fs::write(lit.join("scene.toml"), "geometry = \"solution.obj\"\n").expect("can be written");
+    let before = names(&lit);
+    let by_another_way = folder.path().join("lit/../lit");
+    for scene in [&lit, &lit.join("solution.obj")] {
+        let solve = ["solve", text(scene), "-o", text(&by_another_way)];
+        let run = radiosity(&[&solve[..], &["--formats", "glb,obj"]].concat());
+        run.assert_refused(2, &["solution.obj", "belongs to the scene", "-o"]);
+        let kept = fs::read_to_string(lit.join("solution.obj")).expect("is still there");
+        assert_eq!((kept, names(&lit)), (obj.clone(), before.clone()));
+    }
+    let other = ["solve", text(&lit), "-o", text(&lit), "--no-pictures"];
+    radiosity(&other).assert_success();
+
+    // Nor when a solve of it goes on elsewhere.
+    let ply = lit.join("solution.ply");
+    let first = folder.path().join("first");
+    let solve = ["solve", text(&ply), "-o", text(&first), "--no-pictures"];
+    radiosity(&solve).assert_success();
+    radiosity(&["resume", text(&first), "-o", text(&lit)]).assert_refused(2, &["solution.ply"]);
+}
+
+#[test]
+fn a_picture_never_replaces_a_texture() {
+    let folder = folder();
+    let texture = folder.path().join("mesh.png");
+    let mut png = Vec::new();
+    radiosity::codec::encode_png(&mut png, 1, 1, &[[200; 3]]).expect("can be encoded");
+    fs::write(&texture, &png).expect("can be written");
+    let corners = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,CORNERS"}],
+        "images":[{"uri":"mesh.png"}],"textures":[{"source":0}]}"#;
+    let scene = folder.path().join("mesh.gltf");
+    fs::write(&scene, gltf.replace("CORNERS", corners)).expect("can be written");
+    let solve = ["solve", text(&scene), "-o", text(folder.path())];
+    radiosity(&solve).assert_refused(2, &["mesh.png", "belongs to the scene"]);
+    radiosity(&[&solve[..], &["--no-pictures"]].concat()).assert_success();
+    assert_eq!(fs::read(&texture).expect("is still there"), png);
+}
+
+#[test]
+fn the_report_is_there_when_a_picture_cannot_be_written() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("shaded.exr")).expect("can be made");
+    let geometry = scene("geometry");
+    let solve = ["solve", text(&geometry), "-o", text(folder.path())];
+    let more = ["--max-shots", "1", "--formats", "none"];
+    radiosity(&[&solve[..], &more].concat()).assert_refused(1, &["shaded.exr"]);
+    let kept = ["report.json", "shaded.exr", "solution.rad"];
+    assert_eq!(names(folder.path()), kept);
 }

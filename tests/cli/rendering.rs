@@ -73,7 +73,7 @@ fn a_plan_is_drawn_with_another_way_up() {
 fn a_view_that_cannot_be_is_refused() {
     let (_folder, solved) = draft("geometry");
     let refused = |arguments: &[&str], words: &[&str]| {
-        radiosity(&[&["render", text(&solved)], arguments].concat()).assert_refused(3, words);
+        radiosity(&[&["render", text(&solved)], arguments].concat()).assert_refused(2, words);
     };
     refused(&["--camera", "back"], &["`back`", "front"]);
     refused(&["--fov", "180"], &["180"]);
@@ -108,4 +108,31 @@ fn a_window_needs_a_display_or_the_program_that_has_one() {
         assert_eq!(run.err.lines().count(), 1, "{}", run.err);
     }
     assert!(!output.exists(), "nothing was begun");
+}
+
+#[test]
+fn a_solution_is_found_by_its_folder_and_by_its_file() {
+    let (folder, solved) = draft("geometry");
+    let file = solved.join("solution.rad");
+    let copy = folder.path().join("copy.glb");
+    radiosity(&["render", text(&file), "--width", "32", "--height", "32"]).assert_success();
+    assert!(solved.join("shaded.png").is_file(), "beside the solution");
+    radiosity(&["export", text(&file), "-o", text(&copy)]).assert_success();
+    radiosity(&["probe", text(&file), "--grid", "y=0.5"]).assert_success();
+}
+
+#[test]
+fn where_there_is_only_a_checkpoint_the_way_on_is_named() {
+    let (_folder, solved) = draft("geometry");
+    std::fs::rename(solved.join("solution.rad"), solved.join("checkpoint.rad"))
+        .expect("can be renamed");
+    for command in [
+        &["render"][..],
+        &["export", "-o", "a.glb"],
+        &["probe", "points.csv"],
+    ] {
+        let (name, more) = command.split_first().expect("has a name");
+        let run = radiosity(&[&[*name, text(&solved)], more].concat());
+        run.assert_refused(3, &["checkpoint.rad", "radiosity resume"]);
+    }
 }

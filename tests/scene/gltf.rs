@@ -261,6 +261,21 @@ fn cameras_look_along_their_negative_z() {
 }
 
 #[test]
+fn cameras_whose_names_no_folder_of_pictures_can_have_are_numbered() {
+    let mut document = square();
+    let names = ["report.json", &"c".repeat(300), "fine", "fine"];
+    document["scenes"][0]["nodes"] = json!([0, 1, 2, 3, 4]);
+    document["cameras"] = json!([
+        { "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } },
+    ]);
+    let nodes = document["nodes"].as_array_mut().expect("is a list");
+    nodes.extend(names.map(|name| json!({ "name": name, "camera": 0, "translation": [1, 2, 3] })));
+    let (scene, _) = load(&document);
+    let given: Vec<&str> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(given, ["camera 1", "camera 2", "fine", "fine 2"]);
+}
+
+#[test]
 fn strips_fans_quantised_and_sparse_accessors_are_read() {
     for (mode, indices, normal) in [
         (5, [0u16, 1, 3, 2, 2, 2], DVec3::Z),

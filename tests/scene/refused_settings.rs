@@ -10,7 +10,7 @@ fn toml_is_refused(text: &str, message: &str) {
     let files = [
         ("it.obj", obj),
         ("it.mtl", "newmtl a\nKd .5 .5 .5\n"),
-        ("scene.toml", &toml),
+        ("scene.toml", toml.as_str()),
     ];
     assert_eq!(Files::new(&files).refusal(""), message);
 }
@@ -173,11 +173,25 @@ fn cameras_of_a_scene_file() {
         "exposure = inf",
         "`a` with exposure = inf; expected a finite number of stops",
     );
-    for name in ["", "a/b", "..", "a:b"] {
-        let message =
-            format!("`{name}` with such a name; expected a name that can be part of a file's");
+    let (long, longest) = ("ä".repeat(128), "ä".repeat(127));
+    for name in ["", "a/b", "..", "a:b", "report.json", "Mesh.PNG", &long] {
+        let shown: String = name.chars().take(60).collect();
+        let more = if name.chars().count() > 60 { "…" } else { "" };
+        let expected =
+            "one for a folder beside the results: no path, none of their names, 255 bytes at most";
+        let message = format!("`{shown}{more}` with such a name; expected {expected}");
         camera_is_refused(&format!("name = '{name}'"), &message);
     }
+    let camera = format!("[[camera]]\nname = '{longest}'\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n");
+    let toml = format!("geometry = \"it.obj\"\n{camera}");
+    let files = Files::new(&[
+        ("scene.toml", toml.as_str()),
+        ("it.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+    ]);
+    assert_eq!(
+        files.load("").expect("can be read").cameras[0].name,
+        longest
+    );
     let camera = "[[camera]]\nname = 'a'\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
     toml_is_refused(
         &format!("{camera}{camera}"),

@@ -60,14 +60,15 @@ pub const RULES: [Rule; 9] = [
 ];
 
 /// Which rooms a room may import, besides itself. A new room needs a line here.
-const IMPORTS: [(&str, &[&str]); 17] = [
+const IMPORTS: [(&str, &[&str]); 18] = [
+    ("words", &[]),
     ("codec", &[]),
     ("geometry", &[]),
     ("radiometry", &[]),
     ("simd", &[]),
     ("threads", &[]),
     ("scene", &["codec", "geometry", "radiometry"]),
-    ("visibility", &["simd"]),
+    ("visibility", &["simd", "words"]),
     (
         "form_factor",
         &["geometry", "radiometry", "simd", "visibility"],
@@ -81,7 +82,14 @@ const IMPORTS: [(&str, &[&str]); 17] = [
     ),
     (
         "output",
-        &["codec", "radiometry", "scene", "matrix", "solution"],
+        &[
+            "codec",
+            "radiometry",
+            "scene",
+            "matrix",
+            "solution",
+            "words",
+        ],
     ),
     (
         "render",
@@ -99,6 +107,7 @@ const IMPORTS: [(&str, &[&str]); 17] = [
             "radiometry",
             "solver",
             "solution",
+            "words",
         ],
     ),
     ("cli", CLI),
@@ -138,6 +147,7 @@ const CLI: &[&str] = &[
     "render",
     "pipeline",
     "viewer",
+    "words",
 ];
 
 /// Crates that are the language we speak rather than a choice of one room: vectors, threads, derives, a hasher.

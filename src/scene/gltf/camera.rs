@@ -2,7 +2,7 @@
 
 use super::Noticed;
 use super::nodes::Placed;
-use crate::scene::cameras::{DEFAULT_SIZE, names_a_file};
+use crate::scene::cameras::{DEFAULT_SIZE, LONGEST_NAME, names_a_file};
 use crate::scene::{Camera, limits};
 use ::gltf::camera::Projection;
 use glam::DVec3;
@@ -53,9 +53,10 @@ fn view(node: &Placed, aspect: f64, horizontal_fov: f64) -> Option<Camera> {
     })
 }
 
-/// The name, or one like it that can be part of a file's name and is not taken.
+/// The name, or one that a folder of pictures can have, with a number if it is taken.
 fn unique(name: &str, taken: &[Camera]) -> String {
-    let plain = match names_a_file(name) {
+    let has_room = name.len() + " 1000000".len() <= LONGEST_NAME;
+    let plain = match names_a_file(name) && has_room {
         true => name.to_owned(),
         false => format!("camera {}", taken.len() + 1),
     };

@@ -1,5 +1,6 @@
 //! What Embree calls back about: the memory that it takes, and what it has to say of its errors.
 
+use crate::words::size;
 use embree4_sys as sys;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::NonNull;
@@ -57,8 +58,8 @@ impl Watch {
             return true;
         }
         self.note(format!(
-            "more than the {} MiB that it may hold would be needed",
-            self.limit >> 20
+            "more than the {} that it may hold would be needed (--memory-limit)",
+            size(self.limit.unsigned_abs(), self.limit.unsigned_abs())
         ));
         false
     }
