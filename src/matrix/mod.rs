@@ -4,8 +4,8 @@
 //! row sums up to 1 in a closed scene. An [`Enclosure`] is a scene made ready: its [`Row`]s are radiating sides, or groups of them. It
 //! hands out the matrix row by row ([`Enclosure::each_row`]), or whole ([`Enclosure::matrix`]).
 //!
-//! 1. `rows`: sides of surfaces, divided (`divide`), split where others meet them, become flat `facet`s; those that are `covered` do not
-//!    count.
+//! 1. `rows`: sides of surfaces, divided (`divide`), split where others meet them, become flat `facet`s; those that are `covered`, as what lies in
+//!    a `solid` is, do not count.
 //! 2. `join`: neighbours in one plane become one `occluder`, and convex `body`s hide by their `silhouette`; `tree` finds for a pair of facets those that may come between.
 //! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
 //!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
@@ -39,6 +39,7 @@ mod pair;
 mod rays;
 mod rows;
 mod silhouette;
+mod solid;
 mod space;
 mod tree;
 mod unhindered;
