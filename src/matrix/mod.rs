@@ -10,10 +10,12 @@
 //! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
 //!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
 //!    agree (`hidden`), or rays are traced where there is too much to cut (`rays`).
-//! 4. `enforce` closes the balance on demand, `balance` solves for radiosity.
+//! 4. `work` does so for all pairs of rows, and `again` once more for the rows whose sums tell that an entry is off.
+//! 5. `enforce` closes the balance on demand, `balance` solves for radiosity.
 //!
 //! Imports `geometry`, `radiometry`, `scene`, `threads`, `visibility`, `form_factor`, and from `mesh` the splitting along lines of contact.
 
+mod again;
 mod balance;
 mod body;
 mod certificate;
@@ -44,6 +46,7 @@ mod space;
 mod tree;
 mod unhindered;
 mod visible;
+mod work;
 
 pub use balance::Balance;
 pub use certificate::{Certificate, Tally};
