@@ -161,6 +161,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         };
     let mut warnings = enclosure.warnings().to_vec();
     warnings.extend(blindness(&certificate, table.rows));
+    warnings.extend(excess(&certificate, table.rows));
     for warning in &warnings[enclosure.warnings().len()..] {
         say::warning(warning);
     }
@@ -206,17 +207,35 @@ fn blindness(certificate: &Certificate, rows: &[Row]) -> Option<String> {
         0 => return None,
         count if count == rows.len() => "no row sees any other".to_owned(),
         count => {
-            let named = blind[..count.min(NAMED)].join("`, `");
-            let others = if count > NAMED { ", …" } else { "" };
-            format!(
-                "{count} of {} rows see no other (`{named}`{others})",
-                rows.len()
-            )
+            let named = first_of(&blind);
+            format!("{count} of {} rows see no other ({named})", rows.len())
         }
     };
     Some(format!(
         "{what}: surfaces radiate from the side from which their corners run counter-clockwise; if that is the wrong one, turn them or say sides = \"both\" in the scene.toml"
     ))
+}
+
+/// Rows of which it is known that they are less accurate than was estimated.
+fn excess(certificate: &Certificate, rows: &[Row]) -> Option<String> {
+    let rows: Vec<&str> = (certificate.exceeding.iter())
+        .map(|row| rows[*row as usize].label.as_str())
+        .collect();
+    let which = match rows.len() {
+        0 => return None,
+        1 => format!("row {} sums", first_of(&rows)),
+        count => format!("{count} rows ({}) sum", first_of(&rows)),
+    };
+    Some(format!(
+        "{which} up to more than 1 by more than the errors that were estimated: what is above 1 is stated as the error"
+    ))
+}
+
+/// The first few of some labels.
+fn first_of(labels: &[&str]) -> String {
+    let first = labels[..labels.len().min(NAMED)].join("`, `");
+    let others = if labels.len() > NAMED { ", …" } else { "" };
+    format!("`{first}`{others}")
 }
 
 fn format_of(path: &Path) -> Result<Format, CliError> {
@@ -298,6 +317,18 @@ fn notes(arguments: &Arguments, enclosure: &Enclosure) -> Vec<String> {
     ]
 }
 
+/// What the row sums tell.
+fn balance(certificate: &Certificate) -> String {
+    let escaped = 100.0 * certificate.escaped;
+    if certificate.is_closed() {
+        "closed".to_owned()
+    } else if escaped > 0.0 {
+        format!("open, {escaped:.4} % of the flux escapes")
+    } else {
+        format!("too large, {:.4} % more flux arrives than leaves", -escaped)
+    }
+}
+
 fn summary(report: &Report<'_>) -> String {
     let certificate = report.certificate;
     let pairs = &certificate.pairs;
@@ -308,13 +339,7 @@ fn summary(report: &Report<'_>) -> String {
          pairs of flat pieces: {} exchange nothing, {} unhindered, {} with shadows cut out, {} sampled with {} rays\n",
         counted(report.labels.len(), "row", "rows"),
         report.seconds,
-        match report.closed {
-            true => "closed".to_owned(),
-            false => format!(
-                "open, {:.4} % of the flux escapes",
-                100.0 * certificate.escaped
-            ),
-        },
+        balance(certificate),
         certificate.largest_error(),
         counted(certificate.limited.len(), "entry", "entries"),
         pairs.nothing,

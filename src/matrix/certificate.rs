@@ -7,7 +7,18 @@ use serde::Serialize;
 use std::ops::AddAssign;
 
 /// A row sum may differ from 1 by this more than its error estimate, and the scene still counts as closed.
-const CLOSED: f64 = 1e-3;
+pub(super) const CLOSED: f64 = 1e-3;
+
+/// Errors are estimates: what is off by no more than so many of them says nothing.
+const FEW: f64 = 3.0;
+
+/// Nor does what rounding may come to.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a row sum is off by more than the error of the row tells.
+pub(super) fn exceeds(by: f64, error: f64) -> bool {
+    by > FEW * error + ROUNDING
+}
 
 /// How the pairs of flat pieces were worked out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -55,8 +66,11 @@ impl AddAssign for Tally {
 pub struct Certificate {
     /// Σ_j F_ij of each row: 1 in a closed scene, else less by the share that escapes; 0 where all of it is covered.
     pub row_sums: Vec<f64>,
-    /// Estimated error of each row: the root of the sum of the squares of its entries' errors.
+    /// Estimated error of each row: the root of the sum of the squares of its entries' errors; for those in `exceeding` what their sum
+    /// has above 1.
     pub row_errors: Vec<f64>,
+    /// Rows whose sum exceeds 1 by more than the errors that were estimated for their entries come to.
+    pub exceeding: Vec<u32>,
     /// Entries (row, column; from 0) that are less accurate than asked.
     pub limited: Vec<[u32; 2]>,
     /// Share of the flux of all rows, in proportion to their area, that escapes.
@@ -68,6 +82,8 @@ pub struct Certificate {
     pub pairs: Tally,
     #[serde(skip)]
     weights: Vec<f64>,
+    #[serde(skip)]
+    is_closed: bool,
 }
 
 impl Certificate {
@@ -77,6 +93,7 @@ impl Certificate {
         Self {
             row_sums: Vec::with_capacity(areas.len()),
             row_errors: Vec::with_capacity(areas.len()),
+            exceeding: Vec::new(),
             limited: Vec::new(),
             escaped: 0.0,
             covered: enclosure.rows().iter().map(Row::covered_share).collect(),
@@ -85,34 +102,41 @@ impl Certificate {
                 .iter()
                 .map(|area| area / total.max(f64::MIN_POSITIVE))
                 .collect(),
+            is_closed: true,
         }
     }
 
-    pub(super) fn add(&mut self, row: usize, sum: f64, error: f64, limited: &[u32]) {
+    /// Adds a row with the error that was estimated; returns the one that is stated.
+    pub(super) fn add(&mut self, row: usize, sum: f64, mut error: f64, limited: &[u32]) -> f64 {
+        if self.covered[row] < 1.0 {
+            self.is_closed &= (sum - 1.0).abs() <= CLOSED + FEW * error;
+        }
+        if exceeds(sum - 1.0, error) {
+            self.exceeding.push(row as u32);
+            error = sum - 1.0;
+        }
         self.row_sums.push(sum);
         self.row_errors.push(error);
         self.limited
             .extend(limited.iter().map(|column| [row as u32, *column]));
         self.escaped += self.weights[row] * (1.0 - sum);
+        error
     }
 
-    /// Rows with some area that is not covered, by number, sum and error.
-    fn exposed(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
-        let rows = self.row_sums.iter().zip(&self.row_errors).enumerate();
+    /// Rows with some area that is not covered, by number and sum.
+    fn exposed(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let rows = self.row_sums.iter().copied().enumerate();
         rows.filter(|(row, _)| self.covered[*row] < 1.0)
-            .map(|(row, (sum, error))| (row, *sum, *error))
     }
 
     /// Whether every row sums up to 1, as far as the errors tell; rows that are covered altogether are left out.
     pub fn is_closed(&self) -> bool {
-        self.exposed()
-            .all(|(_, sum, error)| (sum - 1.0).abs() <= CLOSED + 3.0 * error)
+        self.is_closed
     }
 
     /// Least and largest row sum of those that are not covered altogether.
     pub fn sum_range(&self) -> (f64, f64) {
-        let range =
-            |(low, high): (f64, f64), (_, sum, _): (usize, f64, f64)| (sum.min(low), sum.max(high));
+        let range = |(low, high): (f64, f64), (_, sum): (usize, f64)| (sum.min(low), sum.max(high));
         self.exposed()
             .fold((f64::INFINITY, f64::NEG_INFINITY), range)
     }
@@ -120,8 +144,8 @@ impl Certificate {
     /// Rows that see no other, though nothing covers them: they face outwards, as a rule.
     pub fn blind_rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.exposed()
-            .filter(|(_, sum, _)| *sum == 0.0)
-            .map(|(row, ..)| row)
+            .filter(|(_, sum)| *sum == 0.0)
+            .map(|(row, _)| row)
     }
 
     /// Largest error of a row.

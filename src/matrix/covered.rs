@@ -2,7 +2,8 @@
 //! as area nor as open.
 //!
 //! A piece is buried where it looks into a convex body whose inside does not radiate, as a floor below a box does, with or without a
-//! bottom; or, for solids of any shape, where every ray that leaves it ends on a side that does not radiate. The bottom itself faces the void
+//! bottom, unless it is hollow there; or, for solids of any shape, where every ray that leaves it ends on a side that does not radiate, or some do and it lies in the solid
+//! ([`super::solid`]): what reaches into the solid, and the floor below it, see fronts of one another there. The bottom itself faces the void
 //! below the floor; it is covered where the piece in whose plane it lies, back to back, is buried. Surfaces have been split where others
 //! meet them, so a piece is covered as a whole or not at all.
 //!
@@ -12,7 +13,8 @@ use super::convex::Convex;
 use super::facet::Facet;
 use super::gauss::each_node;
 use super::occluder::Occluder;
-use crate::geometry::{cosine_direction, jitter, lift, polygon};
+use super::solid::Solids;
+use crate::geometry::{bounds, cosine_direction, jitter, lift, polygon};
 use crate::scene::{Scene, Sides, Surface};
 use crate::visibility::{Hit, Ray, Visibility};
 use glam::DVec3;
@@ -32,6 +34,8 @@ enum Sees {
     Light,
     /// All end on sides that do not radiate.
     Backs,
+    /// The inside of a solid that something else reaches into.
+    Solid(u32),
     /// Some leave the scene, and none ends on what radiates.
     Void,
 }
@@ -53,20 +57,20 @@ impl Covers<'_> {
         let scout = Scout {
             visibility: self.visibility,
             sides: self.sides(),
-            solids: self.solids(),
+            bodies: self.bodies(),
+            solids: Solids::new(self.scene, self.positions),
             extent: self.extent,
         };
         let numbers: Vec<u32> = (0..facets.len() as u32).collect();
         let look = |number: &u32| scout.look(&facets[*number as usize], *number);
-        let sees: Vec<Sees> = numbers.par_iter().map(look).collect();
-        let of_backs = facets
-            .iter()
-            .zip(&sees)
-            .filter(|(_, sees)| **sees == Sees::Backs);
-        let buried: Vec<&Facet> = of_backs.map(|(facet, _)| facet).collect();
+        let mut sees: Vec<Sees> = numbers.par_iter().map(look).collect();
+        scout.look_into_solids(facets, &mut sees);
+        let is_buried = |sees: &Sees| matches!(sees, Sees::Backs | Sees::Solid(_));
+        let of_buried = facets.iter().zip(&sees).filter(|(_, sees)| is_buried(sees));
+        let buried: Vec<&Facet> = of_buried.map(|(facet, _)| facet).collect();
         let is_covered = |(facet, sees): (&Facet, &Sees)| match sees {
             Sees::Light => false,
-            Sees::Backs => true,
+            Sees::Backs | Sees::Solid(_) => true,
             Sees::Void => buried
                 .iter()
                 .any(|it| lies_on(facet, it, FLAT * self.extent)),
@@ -89,7 +93,7 @@ impl Covers<'_> {
     }
 
     /// The convex bodies no face of which radiates inwards.
-    fn solids(&self) -> Vec<&Occluder> {
+    fn bodies(&self) -> Vec<&Occluder> {
         let two_sided = self
             .scene
             .surfaces
@@ -109,14 +113,19 @@ impl Covers<'_> {
 struct Scout<'a> {
     visibility: &'a dyn Visibility,
     sides: Vec<(DVec3, Sides)>,
-    solids: Vec<&'a Occluder>,
+    bodies: Vec<&'a Occluder>,
+    solids: Solids,
     extent: f64,
 }
 
 impl Scout<'_> {
     fn look(&self, facet: &Facet, number: u32) -> Sees {
-        let outside = lift(facet.centroid, facet.normal, self.extent);
-        if self.solids.iter().any(|body| body.contains(outside)) {
+        let outside = self.outside(facet);
+        let is_buried = |body: &&Occluder| {
+            let around = || bounds(body.corners.iter().copied()).into();
+            body.contains(outside) && !self.solids.is_hollow(around(), outside)
+        };
+        if self.bodies.iter().any(is_buried) {
             return Sees::Backs;
         }
         let mut places = Vec::new();
@@ -124,7 +133,7 @@ impl Scout<'_> {
             each_node(&tile, 2, |place, _| places.push(place));
         }
         let (mut sees, mut first) = (Sees::Backs, 0);
-        let (mut rays, mut hits) = (Vec::new(), Vec::new());
+        let (mut rays, mut hits, mut solids) = (Vec::new(), Vec::new(), Vec::new());
         for count in ROUNDS {
             rays.clear();
             rays.extend((first..first + count).map(|k| {
@@ -136,18 +145,52 @@ impl Scout<'_> {
             }));
             first += count;
             self.visibility.nearest(&rays, &mut hits);
+            let mut is_lit = false;
             for (ray, hit) in rays.iter().zip(&hits) {
                 match hit {
                     None => sees = Sees::Void,
-                    Some(hit) if self.radiates(hit, ray) => return Sees::Light,
-                    Some(_) => {}
+                    Some(hit) if self.radiates(hit, ray) => is_lit = true,
+                    Some(hit) => solids.extend(self.solids.of_triangle(hit.triangle)),
                 }
+            }
+            if is_lit {
+                solids.sort_unstable();
+                solids.dedup();
+                let mut solids = solids.into_iter();
+                let holding = solids.find(|solid| self.solids.hold(*solid, outside));
+                return holding.map_or(Sees::Light, Sees::Solid);
             }
             if sees == Sees::Void && first >= ROUNDS[0] + ROUNDS[1] {
                 break;
             }
         }
         sees
+    }
+
+    /// Looks once more, in the solids that were found to hold something, at all that sees light: between things that reach into a solid,
+    /// the first rays may have ended on these alone.
+    fn look_into_solids(&self, facets: &[Facet], sees: &mut [Sees]) {
+        let mut solids: Vec<u32> = sees
+            .iter()
+            .filter_map(|sees| match sees {
+                Sees::Solid(solid) => Some(*solid),
+                _ => None,
+            })
+            .collect();
+        solids.sort_unstable();
+        solids.dedup();
+        facets.par_iter().zip(sees).for_each(|(facet, sees)| {
+            if *sees == Sees::Light {
+                let mut solids = solids.iter();
+                let holding = solids.find(|it| self.solids.hold(**it, self.outside(facet)));
+                *sees = holding.map_or(Sees::Light, |solid| Sees::Solid(*solid));
+            }
+        });
+    }
+
+    /// A point just above the middle of a facet.
+    fn outside(&self, facet: &Facet) -> DVec3 {
+        lift(facet.centroid, facet.normal, self.extent)
     }
 
     fn radiates(&self, hit: &Hit, ray: &Ray) -> bool {

@@ -1,19 +1,17 @@
 //! A scene made ready, and its matrix row by row.
 
-use super::certificate::{Certificate, Tally};
+use super::certificate::Certificate;
 use super::covered::Covers;
 use super::divide::check_count;
 use super::facet::Facet;
-use super::pair::{Exchange, Kind, Worker};
 use super::rows::{Row, Rows};
 use super::space::{Budget, Space, occluders, row_lengths, triangles};
+use super::work::Pairs;
 use super::{MatrixError, Options};
 use crate::scene::NamedScene;
 use crate::threads::pool;
 use crate::visibility::{EngineInfo, build};
 use rayon::ThreadPool;
-use rayon::prelude::*;
-use std::ops::Range;
 
 /// Up to this many rows the exchanges of all pairs are kept (1.5 GiB) and each is worked out once; beyond it twice, so that memory
 /// grows with the number of rows and not with its square.
@@ -25,10 +23,12 @@ const BLOCK: usize = 16;
 /// A scene made ready for its matrix.
 #[derive(Debug)]
 pub struct Enclosure {
-    rows: Rows,
-    space: Space,
-    pool: ThreadPool,
+    pub(super) rows: Rows,
+    pub(super) space: Space,
+    pub(super) pool: ThreadPool,
     keep: bool,
+    /// Whether surfaces overlap, so that row sums exceed 1 with reason.
+    overlaps: bool,
     warnings: Vec<String>,
 }
 
@@ -41,29 +41,11 @@ pub struct FormFactors<'a> {
     pub values: &'a [f64],
     /// Σ_j F_ij: 1 in a closed scene; what is missing escapes.
     pub sum: f64,
-    /// Estimate of the error of the row: the root of the sum of the squares of the entries' errors.
+    /// Estimate of the error of the row: the root of the sum of the squares of the entries' errors; or by how much the sum exceeds 1,
+    /// where that is more than such errors come to.
     pub error: f64,
     /// Columns whose entries are less accurate than asked because the limit of refinement came first.
     pub limited: &'a [u32],
-}
-
-/// Whether a pair is worked out with the first of its rows only, or with both.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Pairs {
-    Once,
-    Twice,
-}
-
-/// What has been worked out of a row.
-struct Work {
-    /// The first column.
-    first: usize,
-    /// A_i F_ij from there on, in frame units squared.
-    amounts: Vec<f64>,
-    /// Errors of those that were partly hidden, by column.
-    errors: Vec<(u32, f64)>,
-    limited: Vec<u32>,
-    tally: Tally,
 }
 
 impl Enclosure {
@@ -98,7 +80,9 @@ impl Enclosure {
             return Err(MatrixError::NothingRadiates);
         }
         let mut warnings = scene.warnings.clone();
-        warnings.extend(super::overlap::overlaps(named, &positions, extent));
+        let overlaps = super::overlap::overlaps(named, &positions, extent);
+        let is_overlapping = !overlaps.is_empty();
+        warnings.extend(overlaps);
         if rows.unsplit > 0 {
             warnings.push(format!(
                 "{} surfaces not split where others meet them: entries there converge slowly",
@@ -121,6 +105,7 @@ impl Enclosure {
             space,
             pool,
             keep,
+            overlaps: is_overlapping,
             warnings,
         })
     }
@@ -167,7 +152,10 @@ impl Enclosure {
         mut sink: impl FnMut(&FormFactors<'_>) -> Result<(), E>,
     ) -> Result<Certificate, E> {
         let count = self.rows.list.len();
-        let works = self.work(0..count, Pairs::Once);
+        let mut works = self.work(0..count, Pairs::Once);
+        if !self.overlaps {
+            self.work_again(&mut works);
+        }
         let mut squares = vec![0.0; count];
         let mut limited = vec![Vec::new(); count];
         for (row, work) in works.iter().enumerate() {
@@ -257,7 +245,7 @@ impl Enclosure {
             true => (squares / (area * area) + quadrature).sqrt(),
             false => 0.0,
         };
-        certificate.add(row, sum, error, limited);
+        let error = certificate.add(row, sum, error, limited);
         sink(&FormFactors {
             index: row,
             values,
@@ -267,79 +255,9 @@ impl Enclosure {
         })
     }
 
-    /// Works rows out in parallel.
-    fn work(&self, rows: Range<usize>, pairs: Pairs) -> Vec<Work> {
-        let start = || Worker::new(&self.space);
-        self.pool.install(|| {
-            rows.into_par_iter()
-                // Rows are worth a millisecond and more, the first far more than the last.
-                .with_max_len(1)
-                .map_init(start, |worker, row| self.work_row(worker, row, pairs))
-                .collect()
-        })
-    }
-
-    fn work_row(&self, worker: &mut Worker<'_>, row: usize, pairs: Pairs) -> Work {
-        let count = self.rows.list.len();
-        let once = pairs == Pairs::Once;
-        let first = if once { row } else { 0 };
-        let mut work = Work {
-            first,
-            amounts: vec![0.0; count - first],
-            errors: Vec::new(),
-            limited: Vec::new(),
-            tally: Tally::default(),
-        };
-        for i in self.rows.of_row[row].clone() {
-            let from = if once { i + 1 } else { 0 };
-            let Space {
-                facets,
-                tree,
-                occluders,
-                ..
-            } = &self.space;
-            tree.each_partner(&facets[i as usize], occluders, from, &mut |j, near| {
-                let column = self.row_of(j);
-                let within = column == row;
-                // A pair within the row has one error, which counts for both of its directions: it is met from its first facet only.
-                if j == i || (within && j < i) {
-                    return;
-                }
-                let rays_before = worker.rays;
-                let exchange = worker.exchange(i, j, near);
-                if i < j {
-                    work.tally.count(exchange.kind);
-                    work.tally.rays += worker.rays - rays_before;
-                }
-                work.add(column, exchange, within);
-            });
-        }
-        work.limited.sort_unstable();
-        work.limited.dedup();
-        work
-    }
-
     /// The relative error that unhindered entries of a row may have.
-    fn accuracy(&self, row: usize) -> f64 {
+    pub(super) fn accuracy(&self, row: usize) -> f64 {
         let first = self.rows.of_row[row].clone().next();
         first.map_or(0.0, |facet| self.space.budgets[facet as usize].accuracy)
-    }
-
-    /// The row that a facet belongs to.
-    fn row_of(&self, facet: u32) -> usize {
-        self.rows.of_row.partition_point(|range| range.end <= facet)
-    }
-}
-
-impl Work {
-    fn add(&mut self, column: usize, exchange: Exchange, twice: bool) {
-        let times = if twice { 2.0 } else { 1.0 };
-        self.amounts[column - self.first] += times * exchange.amount;
-        if !matches!(exchange.kind, Kind::Nothing | Kind::Unhindered) {
-            self.errors.push((column as u32, times * exchange.error));
-        }
-        if exchange.kind == Kind::Limited {
-            self.limited.push(column as u32);
-        }
     }
 }

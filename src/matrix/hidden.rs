@@ -3,7 +3,9 @@
 //! From a point of one facet the visible part of the other is known exactly ([`super::visible`]), so only the integral over the
 //! point is left. It is smooth from the side that is farther from what lies between and nearly a step from the nearer one;
 //! where the two sides agree, both are right. Where they do not, the smoother one is refined until it is stable; if that is still not
-//! what the other says, as happens where all points of one side miss a sliver, the other is refined too.
+//! what the other says, as happens where all points of one side miss a sliver, the other is refined too. Numbers of points that agree by
+//! accident are found out by a third that does not; where row sums tell that it went wrong all the same ([`super::again`]), both
+//! sides are refined in any case.
 //!
 //! What the pair would exchange unhindered is known beforehand. Where the same points come to something else, as they do near a
 //! common edge, the difference is visible as far as the tiles are that caused it.
@@ -50,6 +52,14 @@ const OTHER: f64 = 0.5;
 /// Where the less smooth side differs by more than this many tolerances, it is refined too, be its own error ever so large.
 const AGREES: f64 = 4.0;
 
+/// Four and sixteen points of one side may agree by accident too: this much of what nine differ from the sixteen by must be no more than
+/// the tolerance. Of 5,900 pairs in random rooms seven were off by more than four times what was estimated; of these it leaves one,
+/// whose sides were alike.
+const NINE: f64 = 0.75;
+
+/// How often every tile is quartered where nothing is taken for granted.
+const CAREFUL: u32 = 2;
+
 /// What came out.
 pub(super) struct Share {
     /// The share of the unhindered exchange that is left, 0 to 1.
@@ -83,6 +93,8 @@ pub(super) struct Looker<'a> {
     /// What lies between, in the order in which it is cut out from either side.
     orders: [Vec<Between>; 2],
     sampler: Sampler<'a>,
+    /// Whether agreement between few points is not enough.
+    pub is_careful: bool,
 }
 
 impl<'a> Looker<'a> {
@@ -92,6 +104,7 @@ impl<'a> Looker<'a> {
             eyes: Eyes::new(space),
             orders: Default::default(),
             sampler: Sampler::new(space),
+            is_careful: false,
         }
     }
 
@@ -168,7 +181,11 @@ impl<'a> Looker<'a> {
             whole,
             is_far: is_afar(gap, inner, MEASURED * tolerance),
         };
-        let share = self.integrate([view(a, b, 0), view(b, a, 1)], tolerance);
+        let views = [view(a, b, 0), view(b, a, 1)];
+        let share = match self.is_careful {
+            true => self.integrate_with_care(views, tolerance),
+            false => self.integrate(views, tolerance),
+        };
         self.orders = orders;
         share
     }
@@ -206,20 +223,40 @@ impl<'a> Looker<'a> {
         if guess.1.max(differs) <= tolerance && agrees(guess) {
             return Ok(Share::of(guess, tolerance));
         }
-        let found = self.refine_all(smooth, tolerance)?;
+        let nine = [guess.0, other.0];
+        let found = self.refine_all(smooth, nine[0], tolerance)?;
         if agrees(found) {
             return Ok(Share::of(found, tolerance));
         }
-        let other = self.refine_all(rough, AGREES * tolerance)?;
+        let other = self.refine_all(rough, nine[1], AGREES * tolerance)?;
         if (found.0 - other.0).abs() <= found.1 + other.1 + tolerance {
             return Ok(Share::of(found, tolerance));
         }
         // One of them has missed something.
-        let found = self.refine_all(smooth, FINER * tolerance)?;
-        let other = self.refine_all(rough, FINER * tolerance)?;
+        let found = self.refine_all(smooth, nine[0], FINER * tolerance)?;
+        let other = self.refine_all(rough, nine[1], FINER * tolerance)?;
         // The smoother one is right sooner.
         let half = 0.5 * (found.0 - other.0).abs();
         Ok(Share::of((found.0, half.max(found.1)), tolerance))
+    }
+
+    /// Refines both sides, whatever few points say.
+    fn integrate_with_care(
+        &mut self,
+        views: [View<'_>; 2],
+        tolerance: f64,
+    ) -> Result<Share, TooIntricate> {
+        let mut found = [(0.0, 0.0); 2];
+        for (found, view) in found.iter_mut().zip(views) {
+            let coarse = self.eyes.look_all(view)?;
+            *found = self
+                .refine_tiles((view, coarse), FINER * tolerance, CAREFUL)?
+                .share_of(view.whole);
+        }
+        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let [better, other] = found;
+        let half = 0.5 * (better.0 - other.0).abs();
+        Ok(Share::of((better.0, half.max(better.1)), tolerance))
     }
 
     /// The share that one side sees from nine points a tile, and its error.
@@ -233,12 +270,30 @@ impl<'a> Looker<'a> {
         Ok((share, error.max(missed)))
     }
 
-    /// The share that one side sees, refined to `tolerance`, with its error; `coarse` is what it sees from four points a tile.
+    /// The share that one side sees, refined to `tolerance`, with its error; `side` is what it sees from four points a tile, `nine` the
+    /// share from nine.
     fn refine_all(
+        &mut self,
+        side: (View<'_>, Sums),
+        nine: f64,
+        tolerance: f64,
+    ) -> Result<(f64, f64), TooIntricate> {
+        let whole = side.0.whole;
+        let refined = self.refine_tiles(side, tolerance, 0)?;
+        let found = refined.share_of(whole);
+        if refined.depth > 0 || NINE * (found.0 - nine).abs() <= tolerance {
+            return Ok(found);
+        }
+        Ok(self.refine_tiles(side, tolerance, 1)?.share_of(whole))
+    }
+
+    /// Refines all tiles, quartering their quarters so many times at `least`.
+    fn refine_tiles(
         &mut self,
         (view, coarse): (View<'_>, Sums),
         tolerance: f64,
-    ) -> Result<(f64, f64), TooIntricate> {
+        least: u32,
+    ) -> Result<Refined, TooIntricate> {
         let mut refined = Refined::default();
         let is_one = view.outer.shape.tiles().count() == 1;
         for tile in view.outer.shape.tiles() {
@@ -247,12 +302,13 @@ impl<'a> Looker<'a> {
             } else {
                 self.eyes.look(view, &tile)?
             };
-            refined.add(self.refine(view, &tile, here, tolerance * view.whole, 0)?);
+            refined.add(self.refine(view, &tile, here, tolerance * view.whole, 0, least)?);
         }
-        Ok(refined.share_of(view.whole))
+        Ok(refined)
     }
 
-    /// Quarters a tile until the error of its visible integral is below `tolerance`.
+    /// Quarters a tile until the error of its visible integral is below `tolerance`; its own depth is `depth`, and `least` is to be
+    /// reached.
     fn refine(
         &mut self,
         view: View<'_>,
@@ -260,6 +316,7 @@ impl<'a> Looker<'a> {
         coarse: Sums,
         tolerance: f64,
         depth: u32,
+        least: u32,
     ) -> Result<Refined, TooIntricate> {
         let quarters = tile.quarters();
         let mut parts = [Sums::default(); 4];
@@ -272,7 +329,7 @@ impl<'a> Looker<'a> {
             let differ = self.eyes.corners_differ(view, tile, fine.share())?;
             error = 0.5 * BETWEEN_POINTS * differ * fine.all;
         }
-        if error <= tolerance || depth == DEEPEST {
+        if (error <= tolerance && depth >= least) || depth == DEEPEST {
             let unsteady = (fine.all - coarse.all).abs();
             let off = Sums {
                 visible: unsteady * fine.share(),
@@ -283,11 +340,12 @@ impl<'a> Looker<'a> {
                 sums: fine,
                 off,
                 error,
+                depth,
             });
         }
         let mut refined = Refined::default();
         for (part, quarter) in parts.into_iter().zip(&quarters) {
-            refined.add(self.refine(view, quarter, part, SHARED * tolerance, depth + 1)?);
+            refined.add(self.refine(view, quarter, part, SHARED * tolerance, depth + 1, least)?);
         }
         Ok(refined)
     }
@@ -300,6 +358,8 @@ struct Refined {
     /// How much the last refinement of each tile changed what it would see unhindered, and how much of that is visible.
     off: Sums,
     error: f64,
+    /// How often quarters were quartered at most.
+    depth: u32,
 }
 
 impl Refined {
@@ -307,6 +367,7 @@ impl Refined {
         self.sums = [self.sums, part.sums].into_iter().sum();
         self.off = [self.off, part.off].into_iter().sum();
         self.error = self.error.hypot(part.error);
+        self.depth = self.depth.max(part.depth);
     }
 
     /// The visible share of what is exchanged unhindered, with its error.

@@ -58,6 +58,12 @@ impl<'a> Worker<'a> {
         }
     }
 
+    /// The same, which takes nothing for granted about what is partly hidden.
+    pub fn with_care(mut self) -> Self {
+        self.looker.is_careful = true;
+        self
+    }
+
     /// The exchange of two facets; `near` are the surfaces that may come between facet i and others. The same for (i, j) and (j, i), bit
     /// for bit.
     pub fn exchange(&mut self, i: u32, j: u32, near: &[Near]) -> Exchange {

@@ -245,6 +245,27 @@ fn walls_that_face_outwards_are_named() {
 }
 
 #[test]
+fn more_than_all_is_not_called_open() {
+    let folder = folder();
+    let path = cube(&folder);
+    let mut obj = fs::read_to_string(&path).expect("was written");
+    // Part of the floor is there twice.
+    obj += "v .2 0 .2\nv .2 0 .8\nv .8 0 .8\nv .8 0 .2\no rug\nf 9 10 11 12\n";
+    fs::write(&path, obj).expect("can be written");
+    let run = form_factors(&path, &folder.path().join("F.csv"), &[]);
+    run.assert_success();
+    assert!(!run.out.contains("open"), "{}", run.out);
+    assert!(run.out.contains("too large, "), "{}", run.out);
+    assert!(
+        run.err.contains("5 rows (`back`, ") && run.err.contains("sum up to more than 1"),
+        "{}",
+        run.err
+    );
+    let json = fs::read_to_string(folder.path().join("F.certificate.json")).expect("was written");
+    assert!(json.contains("\"exceeding\""), "{json}");
+}
+
+#[test]
 #[cfg(unix)]
 fn an_interrupted_run_leaves_nothing_behind() {
     let folder = folder();

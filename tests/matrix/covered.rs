@@ -110,6 +110,94 @@ fn what_only_touches_or_is_open_is_not_covered() {
     assert_eq!(covered(&matrix(&alone)), 0.0);
 }
 
+/// A room of 4 with an L on its floor, 1 wide and high.
+fn room_with_an_l() -> Scene {
+    let mut scene = quads(&[]);
+    add_cuboid(&mut scene, 0, [DVec3::ZERO, DVec3::splat(4.0)], true);
+    let outline = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [1.0, 0.4],
+        [0.4, 0.4],
+        [0.4, 1.0],
+        [0.0, 1.0],
+    ];
+    let at = |k: usize, height: f64| {
+        let [x, z] = outline[k % outline.len()];
+        dvec3(1.0 + x, height, 1.0 + z)
+    };
+    for k in 0..outline.len() {
+        let corners = [at(k, 0.0), at(k, 1.0), at(k + 1, 1.0), at(k + 1, 0.0)];
+        add_quad(&mut scene, 0, corners);
+    }
+    for [a, b, c, d] in [[0, 1, 2, 3], [0, 3, 4, 5]] {
+        add_quad(&mut scene, 0, [a, b, c, d].map(|k| at(k, 0.0)));
+        add_quad(&mut scene, 0, [d, c, b, a].map(|k| at(k, 1.0)));
+    }
+    scene
+}
+
+/// What the L of [`room_with_an_l`] stands on.
+const L_FOOTPRINT: f64 = 0.4 + 0.6 * 0.4;
+
+#[test]
+fn what_reaches_into_a_solid_of_any_shape_uncovers_nothing_in_it() {
+    let mut scene = room_with_an_l();
+    let room = matrix(&scene);
+    assert_closed_but_for_covered(&room, 5e-4);
+    close(covered(&room), 2.0 * L_FOOTPRINT, 1e-9, "the L alone");
+
+    // From above, half of it in the L; the floor and its lower half see one another there.
+    let corners = [dvec3(1.1, 0.5, 1.1), dvec3(1.3, 1.5, 1.3)];
+    add_cuboid(&mut scene, 0, corners, false);
+    let room = matrix(&scene);
+    assert_closed_but_for_covered(&room, 5e-4);
+    close(room.rows[2].covered, L_FOOTPRINT, 1e-9, "the floor");
+    // Its bottom, half of its four sides, and what it covers of the top of the L.
+    let reached = 0.04 + 4.0 * 0.2 * 0.5 + 0.04;
+    close(
+        covered(&room),
+        2.0 * L_FOOTPRINT + reached,
+        1e-9,
+        "with a box",
+    );
+    assert_reciprocal(&room);
+}
+
+#[test]
+fn between_things_that_reach_into_a_solid_nothing_is_exposed() {
+    // Seven plates, 2 cm apart: what lies between them in the L sees fronts before all.
+    let mut scene = room_with_an_l();
+    for k in 0..7 {
+        let x = 1.04 + 0.05 * f64::from(k);
+        let corners = [dvec3(x, 0.4, 1.04), dvec3(x + 0.03, 1.2, 1.36)];
+        add_cuboid(&mut scene, 0, corners, false);
+    }
+    let room = matrix(&scene);
+    assert_closed_but_for_covered(&room, 1e-3);
+    let reached = 7.0 * (2.0 * 0.03 * 0.32 + 2.0 * 0.6 * (0.03 + 0.32));
+    close(covered(&room), 2.0 * L_FOOTPRINT + reached, 1e-9, "plates");
+}
+
+#[test]
+fn a_room_within_thick_walls_is_not_in_a_solid() {
+    // With a block in it; then with a hole in a wall, through which the backs of what is outside are seen.
+    let mut scene = crate::setup::hanging_block();
+    let shell = [DVec3::splat(-0.3), DVec3::splat(1.3)];
+    add_cuboid(&mut scene, 0, shell, false);
+    assert_eq!(covered(&matrix(&scene)), 0.0);
+    scene.surfaces.remove(5);
+    let [left, right] = [0.0, 1.0].map(|x| [0.0, 0.9].map(|y| dvec3(x, y, 1.0)));
+    add_quad(&mut scene, 0, [left[0], left[1], right[1], right[0]]);
+    assert_eq!(covered(&matrix(&scene)), 0.0);
+    // Nor where the solid is no box.
+    let mut scene = room_with_an_l();
+    let cavity = [dvec3(1.1, 0.2, 1.1), dvec3(1.3, 0.8, 1.3)];
+    add_cuboid(&mut scene, 0, cavity, true);
+    let ell = covered(&matrix(&scene));
+    close(ell, 2.0 * L_FOOTPRINT, 1e-9, "an L with a cavity");
+}
+
 #[test]
 fn in_a_furnace_what_is_exposed_shines_alike_and_closure_can_be_enforced() {
     let mut room = matrix(&standing_block());

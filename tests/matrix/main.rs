@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod accidents;
 mod balance;
 mod closed_forms;
 mod covered;
