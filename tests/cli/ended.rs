@@ -64,7 +64,7 @@ fn every_limit_that_ends_something_is_in_a_warning_and_in_the_report() {
         }
         let page = fs::read_to_string(output.join("report.html")).expect("was written");
         assert!(page.contains(begins[0]), "{page}");
-        assert!(!page.contains(">-0.0"), "{page}");
+        assert!(!page.contains(">-0.000000<"), "{page}");
     }
 }
 

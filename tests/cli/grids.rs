@@ -222,7 +222,7 @@ fn grids_that_make_no_sense_are_refused() {
     refused(&[], 2, &["required"]);
     refused(
         &["--grid", "y=1", "--spacing", "1e-9"],
-        3,
+        2,
         &["4000000 at most"],
     );
     refused(&["--grid", "y=1", "--spacing", "0"], 2, &["such as 0.25m"]);

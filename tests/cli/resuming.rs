@@ -217,7 +217,10 @@ fn a_solution_that_was_written_stands_even_if_its_meshes_cannot_be() {
     let more = ["--checkpoint", "1h", "--formats", "glb"];
     run(&[&solve, &DRAFT, &more]).assert_refused(1, &["solution.glb"]);
     // Without a checkpoint, from which `resume` would begin anew.
-    assert_eq!(names(&output), ["solution.glb", "solution.rad"]);
+    assert_eq!(
+        names(&output),
+        ["report.json", "solution.glb", "solution.rad"]
+    );
     let solved = Solution::read(&output.join("solution.rad")).expect("was written");
     assert_eq!(solved.report.stop_reason, StopReason::Converged);
 }
