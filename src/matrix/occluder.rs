@@ -190,7 +190,7 @@ impl Occluder {
     }
 
     /// Hands out the half-spaces, those of `wanted`, whose common part is all that it hides from `eye` of something on the given `sides`,
-    /// until `take` returns false; none if it hides nothing.
+    /// until `take` returns false. Returns whether it hides anything: of what it hides altogether, no half-space may be wanted.
     pub fn shadow(
         &self,
         eye: DVec3,
@@ -198,13 +198,13 @@ impl Occluder {
         there: Sides,
         extent: f64,
         mut take: impl FnMut(Plane) -> bool,
-    ) {
+    ) -> bool {
         let mut seen = 0_u64;
         for (bit, face) in self.faces.iter().enumerate() {
             seen |= u64::from(face.height(eye) > face.thickness) << bit;
         }
         if seen == 0 || seen & there.front != 0 {
-            return;
+            return false;
         }
         if wanted.has_own() && !self.is_body() {
             let behind = &self.faces[usize::from(seen == 1)];
@@ -214,7 +214,7 @@ impl Occluder {
                 reach: ROUNDING * extent,
             };
             if !take(own) {
-                return;
+                return true;
             }
         }
         for (k, edge) in self.edges.iter().enumerate() {
@@ -229,9 +229,10 @@ impl Occluder {
                 reach: ROUNDING * extent * extent * edge.length,
             };
             if !take(plane) {
-                return;
+                return true;
             }
         }
+        true
     }
 }
 

@@ -103,23 +103,23 @@ impl Cutter {
     /// Appends the planes of a shadow that run through the facet.
     fn shadow(&mut self, eye: DVec3, sight: Sight<'_>, between: &Between) -> Shadow {
         let begin = self.planes.len();
-        let (mut has_planes, mut misses) = (false, false);
+        let mut misses = false;
         let Between {
             occluder,
             planes,
             sides,
         } = between;
         let occluder = &sight.occluders[*occluder as usize];
-        occluder.shadow(eye, *planes, sides[sight.there], sight.extent, |plane| {
+        let there = sides[sight.there];
+        let hides = occluder.shadow(eye, *planes, there, sight.extent, |plane| {
             let (low, high) = sight.facet.range_over(plane.normal, plane.offset);
-            has_planes = true;
             misses = high <= plane.reach;
             if !misses && low < -plane.reach {
                 self.planes.push(plane);
             }
             !misses
         });
-        if misses || !has_planes {
+        if misses || !hides {
             self.planes.truncate(begin);
             Shadow::Misses
         } else if self.planes.len() == begin {

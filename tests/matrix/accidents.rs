@@ -8,10 +8,15 @@ use radiosity::scene::{NamedScene, Scene};
 use std::f64::consts::FRAC_PI_4;
 use std::path::Path;
 
+/// Two prisms and a box in a room of 4, askew.
+fn three_prisms() -> NamedScene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three_prisms.obj");
+    NamedScene::load(&path).expect("is a scene")
+}
+
 #[test]
 fn a_third_number_of_points_finds_out_two_that_agree_by_accident() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three_prisms.obj");
-    let named = NamedScene::load(&path).expect("is a scene");
+    let named = three_prisms();
     // To 1e-3 an error of 0.002 is no reason to look at a row again.
     for (tolerance, within) in [(1e-4, 1e-4), (1e-3, 5e-4)] {
         let options = Options {
@@ -24,6 +29,24 @@ fn a_third_number_of_points_finds_out_two_that_agree_by_accident() {
         let [y0, y1] = ["y0", "y1"].map(|label| room.index(label).expect("has a row"));
         close(room.factor(y0, y1), 0.158181, within, "walls past bodies");
         close(room.certificate.row_sums[y0], 1.0, within, "row sum");
+    }
+}
+
+#[test]
+fn a_body_that_hides_all_does_so_from_points_that_see_different_outlines_of_it() {
+    let named = three_prisms();
+    let options = Options {
+        max_area: Some(0.5),
+        tolerance: 1e-3,
+        ..portable()
+    };
+    let enclosure = Enclosure::new(&named, &options).expect("radiates");
+    let room = enclosure.matrix();
+    let [ceiling, wall] = ["ceilz/7", "y0/23"].map(|label| room.index(label).expect("has a row"));
+    // The box lies on all lines between them.
+    assert_eq!(room.factor(ceiling, wall), 0.0);
+    for row in [ceiling, wall] {
+        close(room.certificate.row_sums[row], 1.0, 5e-4, "row sum");
     }
 }
 
