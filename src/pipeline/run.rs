@@ -76,7 +76,8 @@ impl Run {
         let mut options = settings.options;
         let known = report.target.take();
         if let Some(target) = &settings.target {
-            let fresh = target.report();
+            let mut fresh = target.report();
+            fresh.inherited = true;
             let same =
                 known.filter(|known| known.n_rms == fresh.n_rms && known.fixed == fresh.fixed);
             let target = same.unwrap_or(fresh);

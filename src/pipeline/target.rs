@@ -44,6 +44,7 @@ impl Target {
             reached: false,
             rounds: 1,
             strictness: strictness.clamp(LOOSEST, STRICTEST),
+            inherited: false,
             fixed: self.fixed.clone(),
         }
     }
@@ -64,10 +65,14 @@ impl TargetReport {
         if self.reached || self.strictness >= STRICTEST || self.rounds == ROUNDS {
             return false;
         }
+        self.rounds += 1;
+        // What the mesh of other options comes to says nothing of these.
+        if std::mem::take(&mut self.inherited) {
+            return true;
+        }
         // A little more than what is missing, so that one more round is enough.
         self.strictness += (estimate / self.n_rms).ln() / STEP.ln() * 1.1 + 0.08;
         self.strictness = self.strictness.min(STRICTEST);
-        self.rounds += 1;
         true
     }
 }

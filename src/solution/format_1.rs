@@ -192,6 +192,7 @@ impl From<TargetThen> for TargetReport {
             reached: then.reached,
             rounds: then.rounds,
             strictness: 0.0,
+            inherited: false,
             fixed: Changes::new(),
         }
     }

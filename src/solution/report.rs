@@ -97,6 +97,9 @@ pub struct TargetReport {
     /// Where its options lie between the presets: 0 is draft, 1 standard, 2 accurate.
     #[serde(default)]
     pub strictness: f64,
+    /// Whether the mesh was begun with other options: if it does not do, that is no reason for stricter ones.
+    #[serde(default)]
+    pub inherited: bool,
     /// Options that were not for the target to choose.
     #[serde(default)]
     pub fixed: Changes,

@@ -96,6 +96,27 @@ fn a_target_in_sessions_is_reached_by_the_same_rounds() {
     assert!(bits(run.finish()) == bits(whole));
 }
 
+/// On the coarse mesh of another error the first round misses; how far says nothing of what its options come to.
+#[test]
+fn a_target_after_another_is_reached_as_by_a_solve_from_nothing() {
+    let scene = bundled("secondary");
+    let to = |n_rms: f64| Settings {
+        target: Some(radiosity::Target {
+            n_rms,
+            fixed: Default::default(),
+        }),
+        ..settings(draft(), ENGINE, 0)
+    };
+    let coarse = radiosity::solve(&scene, &to(0.2), &mut Silent).expect("can be solved");
+    let anew = radiosity::solve(&scene, &to(0.015), &mut Silent).expect("can be solved");
+    let mut run = Run::resume(coarse, to(0.015)).expect("can be resumed");
+    run.go(&mut Silent).expect("can be solved");
+    let resumed = run.finish();
+    let rounds = |of: &Solution| of.report.target.as_ref().map(|target| target.rounds);
+    assert_eq!(rounds(&resumed), rounds(&anew).map(|rounds| rounds + 1));
+    assert_eq!(resumed.light, anew.light);
+}
+
 /// What an interrupted solve leaves adds up: light that is under way has not been forgotten.
 #[test]
 fn the_ledger_closes_wherever_a_solve_is_left() {
