@@ -1,4 +1,4 @@
-//! Rows whose sums tell that an entry is off by more than was estimated are worked out once more, with care.
+//! Rows whose sums tell that an entry is off by more than was asked for and estimated are worked out once more, with care.
 //!
 //! No row sums up to more than 1. Nor does one to less in a closed scene; whether a scene is closed, the other rows tell.
 
@@ -21,7 +21,7 @@ struct Off {
 impl Enclosure {
     /// Replaces what is off in `works`, which begin on the diagonal.
     pub(super) fn work_again(&self, works: &mut [Work]) {
-        let rows = suspects(&self.off(works));
+        let rows = suspects(&self.off(works), self.tolerance);
         for (row, work) in rows.iter().zip(self.work_with_care(&rows)) {
             replace(works, *row, &work);
         }
@@ -69,11 +69,13 @@ fn both(row: usize, column: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Rows that sum up to too much, and to too little if no row says that the scene is open; in order.
-fn suspects(off: &[Off]) -> Vec<usize> {
-    let is_open = off
-        .iter()
-        .any(|it| it.by < -CLOSED && exceeds(-it.by - CLOSED, it.error));
-    let is_suspect = |it: &Off| exceeds(if is_open { it.by } else { it.by.abs() }, it.error);
+fn suspects(off: &[Off], tolerance: f64) -> Vec<usize> {
+    let is_open = |it: &Off| exceeds(-it.by - CLOSED, it.error, 0.0);
+    let is_open = off.iter().any(is_open);
+    let is_suspect = |it: &Off| {
+        let by = if is_open { it.by } else { it.by.abs() };
+        exceeds(by, it.error, tolerance)
+    };
     let mut rows: Vec<usize> = (0..off.len())
         .filter(|row| is_suspect(&off[*row]))
         .collect();
@@ -124,16 +126,17 @@ mod tests {
 
     #[test]
     fn too_much_is_suspicious_always_and_too_little_where_nothing_is_open() {
-        assert_eq!(suspects(&off(&[0.0, 2e-3, -2e-5, -5e-4])), [1, 3]);
-        assert_eq!(suspects(&off(&[-0.3, 2e-3, -2e-5, -5e-4])), [1]);
-        assert_eq!(suspects(&off(&[-0.3, 1e-5, 0.0])), [0; 0]);
+        assert_eq!(suspects(&off(&[0.0, 2e-3, -2e-5, -5e-4]), 1e-4), [1, 3]);
+        assert_eq!(suspects(&off(&[-0.3, 2e-3, -2e-5, -5e-4]), 1e-4), [1]);
+        assert_eq!(suspects(&off(&[-0.3, 1e-5, 0.0]), 1e-4), [0; 0]);
+        assert_eq!(suspects(&off(&[9e-5, -9e-5]), 1e-4), [0; 0], "as asked");
     }
 
     #[test]
     fn a_few_rows_are_worked_out_again_at_most_and_the_worst() {
         let mut list = vec![1e-3; 100];
         list[70] = 2e-3;
-        let rows = suspects(&off(&list));
+        let rows = suspects(&off(&list), 1e-4);
         assert_eq!(rows.len(), 9);
         assert!(rows.contains(&70));
     }

@@ -12,12 +12,9 @@ pub(super) const CLOSED: f64 = 1e-3;
 /// Errors are estimates: what is off by no more than so many of them says nothing.
 const FEW: f64 = 3.0;
 
-/// Nor does what rounding may come to.
-const ROUNDING: f64 = 1e-9;
-
-/// Whether a row sum is off by more than the error of the row tells.
-pub(super) fn exceeds(by: f64, error: f64) -> bool {
-    by > FEW * error + ROUNDING
+/// Whether a row sum is off by more than was asked for and than the error of the row tells.
+pub(super) fn exceeds(by: f64, error: f64, tolerance: f64) -> bool {
+    by > tolerance.max(FEW * error)
 }
 
 /// How the pairs of flat pieces were worked out.
@@ -69,7 +66,7 @@ pub struct Certificate {
     /// Estimated error of each row: the root of the sum of the squares of its entries' errors; for those in `exceeding` what their sum
     /// has above 1.
     pub row_errors: Vec<f64>,
-    /// Rows whose sum exceeds 1 by more than the errors that were estimated for their entries come to.
+    /// Rows whose sum exceeds 1 by more than the tolerance and than the errors that were estimated for their entries come to.
     pub exceeding: Vec<u32>,
     /// Entries (row, column; from 0) that are less accurate than asked.
     pub limited: Vec<[u32; 2]>,
@@ -84,6 +81,8 @@ pub struct Certificate {
     weights: Vec<f64>,
     #[serde(skip)]
     is_closed: bool,
+    #[serde(skip)]
+    tolerance: f64,
 }
 
 impl Certificate {
@@ -103,6 +102,7 @@ impl Certificate {
                 .map(|area| area / total.max(f64::MIN_POSITIVE))
                 .collect(),
             is_closed: true,
+            tolerance: enclosure.tolerance,
         }
     }
 
@@ -111,7 +111,7 @@ impl Certificate {
         if self.covered[row] < 1.0 {
             self.is_closed &= (sum - 1.0).abs() <= CLOSED + FEW * error;
         }
-        if exceeds(sum - 1.0, error) {
+        if exceeds(sum - 1.0, error, self.tolerance) {
             self.exceeding.push(row as u32);
             error = sum - 1.0;
         }

@@ -29,6 +29,7 @@ pub struct Enclosure {
     keep: bool,
     /// Whether surfaces overlap, so that row sums exceed 1 with reason.
     overlaps: bool,
+    pub(super) tolerance: f64,
     warnings: Vec<String>,
 }
 
@@ -106,6 +107,7 @@ impl Enclosure {
             pool,
             keep,
             overlaps: is_overlapping,
+            tolerance: options.tolerance,
             warnings,
         })
     }
