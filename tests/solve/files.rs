@@ -158,7 +158,7 @@ fn a_file_whose_mesh_is_not_sound_is_refused() {
     refused(known.clone(), far, "the children");
     let circular = element(&|of| of.children = 0);
     refused(known, circular, "the children");
-    quadtrees_are_trees(&whole.mesh, &refused);
+    quadtrees_are_trees(&whole.mesh, refused);
     let root = whole.mesh.element(0);
     let other = Element {
         centre: root.corners[0],
@@ -179,7 +179,7 @@ fn a_file_whose_mesh_is_not_sound_is_refused() {
 
 /// Children of two parents would be walked through twice, theirs four times, and so on to the deepest level. And each child must be where its
 /// parent has a quarter.
-fn quadtrees_are_trees(mesh: &Mesh, refused: &dyn Fn(Vec<u8>, Vec<u8>, &str)) {
+fn quadtrees_are_trees(mesh: &Mesh, refused: impl Fn(Vec<u8>, Vec<u8>, &str)) {
     let numbers = 0..mesh.elements.len() as u32;
     let split = |number: &u32| !mesh.element(*number).is_leaf();
     let split: Vec<u32> = numbers.filter(split).collect();
