@@ -12,6 +12,12 @@ use std::mem::take;
 const SAG: [f64; 2] = [1.0 / 3.0, 5.0 / 12.0];
 
 impl Mesh {
+    /// By how much the mean of light over a leaf exceeds that of its linear interpolant, as a multiple of how much the centre
+    /// exceeds the mean of the corners.
+    pub fn sag(&self, leaf: u32) -> f64 {
+        SAG[usize::from(self.element(leaf).corners().len() == 3)]
+    }
+
     /// Computes the weights of the vertices of some patches.
     pub(super) fn integrate(&mut self, patches: &[u32]) {
         let leaves = patches.par_iter().with_min_len(64).flat_map_iter(|patch| {

@@ -3,7 +3,8 @@
 //! At each point the light of all patches is gathered with much finer source sampling than the solve's own and compared with
 //! what the mesh interpolates there. The difference is the error of interpolation, of source sampling, of the five-times rule
 //! and of what is unshot, in one: everything but the error of the light that is gathered, which is taken in by
-//! letting the mean error go through all reflections. Of an error that differs from place to place and is reflected back to where it came from,
+//! letting the mean error go through all reflections, as far as it is of what surfaces receive: they reflect more than the interpolant has, which
+//! cuts off the tops (`mesh/integral.rs`). Of an error that differs from place to place and is reflected back to where it came from,
 //! as in a gap between bright walls, what is seen is what one reflection loses of it: the estimate is too low there.
 
 use super::error::{ErrorModel, Squares};
@@ -80,7 +81,8 @@ impl Solver<'_> {
         if self.options.audit_points == 0 {
             return None;
         }
-        let places = places(&self.mesh, self.options.audit_points);
+        let fans = open_fans(&self.mesh);
+        let places = places(&self.mesh, &fans, self.options.audit_points);
         if places.is_empty() {
             return None;
         }
@@ -117,7 +119,8 @@ impl Solver<'_> {
         let off = errors().sum::<Power>().element_sum() / count;
         // What all reflections make of a unit of light.
         let amplification = leaving.element_sum() / self.emitted().element_sum();
-        let bias = off * amplification.max(1.0);
+        let received = off + self.beyond_interpolant(&fans);
+        let bias = off + received * (amplification - 1.0).max(0.0);
         let spread = (square - off * off).max(0.0);
         let found = places.iter().zip(errors()).map(|(place, error)| {
             let squares = Squares::of(&self.mesh, &self.light, place.leaf);
@@ -133,6 +136,20 @@ impl Solver<'_> {
             received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or_default(),
             sent_sum: self.course.sent_sum,
         })
+    }
+
+    /// By how much what surfaces receive exceeds what the interpolant on their fans has, in the mean of all points and channels, W/m².
+    fn beyond_interpolant(&self, fans: &[Triangle]) -> f64 {
+        let at = |v: &u32| f64::from(self.light.irradiance[*v as usize].element_sum()) / 3.0;
+        let (mut sum, mut area) = (0.0, 0.0);
+        for fan in fans {
+            let element = self.mesh.element(fan.leaf);
+            let corners = element.corners();
+            let mean = corners.iter().map(at).sum::<f64>() / corners.len() as f64;
+            sum += fan.area * self.mesh.sag(fan.leaf) * (at(&element.centre) - mean);
+            area += fan.area;
+        }
+        sum / area
     }
 
     /// At each receiver all light of `whole`, sampled finely, and the sum of all form factors, sampled as in the solve.
@@ -212,34 +229,50 @@ impl Place {
     }
 }
 
-/// Points spread evenly over all fans, in proportion to their open area.
-fn places(mesh: &Mesh, count: usize) -> Vec<Place> {
-    let triangles: Vec<(u32, [u32; 3], f64)> = mesh
-        .leaves()
+/// A triangle of the fan of a leaf.
+struct Triangle {
+    leaf: u32,
+    corners: [u32; 3],
+    area: f64,
+}
+
+/// All of which no corner is buried.
+fn open_fans(mesh: &Mesh) -> Vec<Triangle> {
+    mesh.leaves()
         .flat_map(|leaf| mesh.fan(leaf).map(move |corners| (leaf, corners)))
         .filter(|(_, corners)| corners.iter().all(|v| !mesh.buried[*v as usize]))
         .map(|(leaf, corners)| {
             let [a, b, c] = corners.map(|v| mesh.position(v));
-            (leaf, corners, 0.5 * (b - a).cross(c - a).length())
+            let area = 0.5 * (b - a).cross(c - a).length();
+            Triangle {
+                leaf,
+                corners,
+                area,
+            }
         })
-        .collect();
-    let total: f64 = triangles.iter().map(|t| t.2).sum();
+        .collect()
+}
+
+/// Points spread evenly over fans, in proportion to their area.
+fn places(mesh: &Mesh, fans: &[Triangle], count: usize) -> Vec<Place> {
+    let total: f64 = fans.iter().map(|fan| fan.area).sum();
     let step = total / count.max(1) as f64;
     let mut places = Vec::with_capacity(count);
     let mut passed = 0.0;
-    for (leaf, corners, area) in triangles {
-        passed += area;
+    for fan in fans {
+        passed += fan.area;
         while places.len() < count && (places.len() as f64 + 0.5) * step < passed {
             let [s, t] = jitter(places.len() as u32, 0x5eed);
             let root = s.sqrt();
             let weights = [1.0 - root, root * (1.0 - t), root * t];
-            let point = corners
-                .iter()
-                .zip(weights)
-                .map(|(v, w)| mesh.position(*v) * w)
-                .sum();
-            let patch = mesh.elements.patch_of(leaf);
-            places.push(Place { leaf, patch, point });
+            let corners = fan.corners.iter().zip(weights);
+            let point = corners.map(|(v, w)| mesh.position(*v) * w).sum();
+            let patch = mesh.elements.patch_of(fan.leaf);
+            places.push(Place {
+                leaf: fan.leaf,
+                patch,
+                point,
+            });
         }
     }
     places

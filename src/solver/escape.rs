@@ -7,7 +7,7 @@ use crate::visibility::{Hit, Ray, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::ops::{AddAssign, Mul};
+use std::ops::{Add, AddAssign, Mul};
 
 /// Whether a ray has ended on a side that does not radiate.
 pub(super) fn is_dark(hit: &Hit, ray: &Ray, backing: &dyn Behind) -> bool {
@@ -31,15 +31,38 @@ impl AddAssign for Lost {
     }
 }
 
-impl Mul<f64> for Lost {
+impl Add for Lost {
     type Output = Self;
 
-    fn mul(self, factor: f64) -> Self {
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl Mul<Power> for Lost {
+    type Output = Self;
+
+    fn mul(self, factor: Power) -> Self {
         Self {
             all: self.all * factor,
             onto_backs: self.onto_backs * factor,
         }
     }
+}
+
+impl Mul<f64> for Lost {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        self * Power::splat(factor)
+    }
+}
+
+/// With how many rays what is lost of a shot is estimated; `power` is a fraction of what is emitted. The square root shares the rays so that
+/// each shot adds its part to the error of the whole.
+pub(super) fn rays_for(power: f64) -> f64 {
+    (16384.0 * power.sqrt()).clamp(256.0, 16384.0).floor()
 }
 
 /// The part of a shot's power that is lost, estimated with `count` rays. Points of patches that `is_open` denies give nothing:

@@ -89,16 +89,17 @@ impl Solver<'_> {
     /// What was gathered from `whole` replaces what there was.
     pub(super) fn take_over(
         &mut self,
-        irradiance: Vec<Spectrum>,
+        mut irradiance: Vec<Spectrum>,
         whole: &Light,
-        lost: Lost,
+        mut lost: Lost,
         sums: Vec<(f64, f64)>,
     ) {
+        let level = self.conserve(&mut irradiance, &mut lost, whole);
         self.light.irradiance = irradiance;
         for ((unshot, now), sent) in
             (self.light.unshot.iter_mut().zip(&self.light.irradiance)).zip(&whole.unshot)
         {
-            *unshot = *now - *sent;
+            *unshot = *now - *sent * level;
         }
         self.light.exitance_unshot.fill(Spectrum::ZERO);
         self.course.lost = lost;

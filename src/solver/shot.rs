@@ -3,7 +3,7 @@
 use super::arrived::Arrived;
 use super::course::{ALL, Shot, Stage};
 use super::descent::Descent;
-use super::escape::{Lost, Part, draw, escaped};
+use super::escape::{Lost, Part, draw, escaped, rays_for};
 use super::feelers::feelers;
 use super::light::Sign;
 use super::refine::Refinement;
@@ -170,8 +170,7 @@ impl<'a> Solver<'a> {
 
     /// What of a source's power, a fraction `power` of the emitted, leaves the scene.
     pub(super) fn escape(&self, shooter: usize, source: &Shooter, power: f64, seed: u32) -> Lost {
-        // The square root shares the rays so that each shot adds its part to the error of the whole.
-        let rays = (16384.0 * power.sqrt()).clamp(256.0, 16384.0) as usize;
+        let rays = rays_for(power) as usize;
         // An emitter emits wherever it is.
         let emits = |patch: usize| self.mesh.patches.at(patch).exitance != Spectrum::ZERO;
         let extent = self.mesh.frame.extent();

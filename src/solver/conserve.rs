@@ -1,0 +1,172 @@
+//! How strong all reflected light is: so strong that power is conserved.
+//!
+//! A gathering is one iteration. How reflected light is spread is then as good as the mesh is, but how much of it there is in all has been left by
+//! the shots, and of each bounce a mesh makes a thousandth too much or too little: between walls that reflect ρ that adds up
+//! to 1/(1 - ρ) times as much. A box of reflectance 0.97 came out 6 % too bright, one of 0.99 18 %. So what is reflected is multiplied,
+//! channel by channel, by the factor with which it is what the direct light and itself become when they are reflected, and by that with
+//! which what is sent arrives or is lost.
+
+use super::escape::{Lost, rays_for};
+use super::light::{Light, Sign};
+use super::run::Solver;
+use super::sums::in_order;
+use super::volley::{Giver, gathered};
+use crate::radiometry::{Power, Spectrum};
+use rayon::prelude::*;
+
+/// An imbalance below this part of the tolerance stays.
+const NEGLIGIBLE: f64 = 0.25;
+
+/// Light is not multiplied by more than this, nor by less than one over it.
+const MOST: f64 = 2.0;
+
+/// What is lost is known to so many standard deviations.
+const SURE: f64 = 2.0;
+
+/// What a gathering sent, and what became of it; powers over the whole scene.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passage {
+    pub sent: Power,
+    /// What of it was found to be lost, with so many rays.
+    pub lost: Power,
+    pub rays: f64,
+    /// What of it arrived,
+    pub arrived: Power,
+    /// and what of that is reflected.
+    pub returned: Power,
+}
+
+/// What reflected light is multiplied by: what is sent (and with it what is lost), and what has arrived.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Level {
+    pub sent: Spectrum,
+    pub arrived: Spectrum,
+}
+
+impl Passage {
+    /// The level at which reflected light, sent as this, conserves power; of direct light `first` is reflected.
+    pub fn level(&self, first: Power) -> Level {
+        let closing = self.closing();
+        let spent = self.sent - self.returned * closing;
+        let is_known = self.sent.cmpgt(Power::ZERO) & spent.cmpgt(Power::ZERO);
+        let factor = Power::select(is_known, first / spent, Power::ONE);
+        let bounds = [1.0 / MOST, MOST].map(Power::splat);
+        let sent = factor.clamp(bounds[0], bounds[1]);
+        Level {
+            sent: sent.as_vec3(),
+            arrived: (sent * closing).as_vec3(),
+        }
+    }
+
+    /// What was sent and not lost over what arrived, as far as the difference is more than the rays' that found what is lost.
+    fn closing(&self) -> Power {
+        let arrived = self.arrived.max(Power::splat(f64::MIN_POSITIVE));
+        let excess = (self.sent - self.lost) / arrived - Power::ONE;
+        let lost = (self.lost / self.sent).clamp(Power::splat(1.0 / self.rays), Power::splat(0.5));
+        let deviation = (lost * (Power::ONE - lost) / self.rays).powf(0.5);
+        let noise = SURE * deviation * self.sent / arrived;
+        let part = Power::ONE - (noise / excess) * (noise / excess);
+        let is_known = self.arrived.cmpgt(Power::ZERO) & part.cmpgt(Power::ZERO);
+        Power::ONE + Power::select(is_known, excess * part, Power::ZERO)
+    }
+
+    /// Whether, with all that is `emitted` in what was sent, power is out of balance by more than a part of the tolerance of it.
+    pub fn is_out_of_balance(&self, emitted: Power, tolerance: f64) -> bool {
+        let over = self.arrived * (self.closing() - Power::ONE);
+        let unshot = self.returned - (self.sent - emitted);
+        (over.abs() + unshot.abs()).element_sum() > NEGLIGIBLE * tolerance * emitted.element_sum()
+    }
+}
+
+impl Solver<'_> {
+    /// Brings what was gathered from `whole`, patch by patch, to the level at which power is conserved, if it is far from it. Returns
+    /// what all that was sent but emitted is to be multiplied by.
+    pub(super) fn conserve(
+        &mut self,
+        irradiance: &mut [Spectrum],
+        lost: &mut Lost,
+        whole: &Light,
+    ) -> Spectrum {
+        let emitted = self.emitted();
+        let (mut sent, mut spread) = (Power::ZERO, 0.0);
+        for patch in 0..self.mesh.patches.len() {
+            let power = whole.unshot_power(&self.mesh, patch, Sign::Positive);
+            let part = power.element_sum() / emitted.element_sum();
+            sent += power;
+            spread += part * part / rays_for(part);
+        }
+        let part = sent.element_sum() / emitted.element_sum();
+        let [arrived, returned] = self.totals(irradiance);
+        let all = Passage {
+            sent,
+            lost: lost.all,
+            rays: part * part / spread,
+            arrived,
+            returned,
+        };
+        if !all.is_out_of_balance(emitted, self.options.tolerance) {
+            return Spectrum::ONE;
+        }
+        let (direct, lost_directly) = self.direct();
+        let [arrived, returned] = self.totals(&direct);
+        let reflected = Passage {
+            sent: all.sent - emitted,
+            lost: all.lost - lost_directly.all,
+            arrived: all.arrived - arrived,
+            returned: all.returned - returned,
+            ..all
+        };
+        let level = reflected.level(returned);
+        let light = irradiance.par_iter_mut().zip(&direct).with_min_len(4096);
+        light.for_each(|(all, direct)| *all = *direct + (*all - *direct) * level.arrived);
+        *lost = lost_directly + (*lost + lost_directly * -Power::ONE) * level.sent.as_dvec3();
+        level.sent
+    }
+
+    /// The light of the emitters alone, gathered.
+    fn direct(&mut self) -> (Vec<Spectrum>, Lost) {
+        let mesh = &self.mesh;
+        let emitters = Light::to_send(mesh, mesh.by_vertex(Spectrum::ZERO));
+        let giver = |patch: usize| Giver {
+            patch,
+            sign: Sign::Positive,
+            power: emitters
+                .unshot_power(mesh, patch, Sign::Positive)
+                .element_sum(),
+        };
+        let givers = (0..mesh.patches.len()).map(giver);
+        let givers: Vec<Giver> = givers.filter(|of| of.power > 0.0).collect();
+        let (mut direct, mut lost, mut rays) = (mesh.by_vertex(Spectrum::ZERO), Lost::default(), 0);
+        for givers in givers.chunks(gathered(mesh)) {
+            for given in self.given(givers, &emitters) {
+                let light = direct.par_iter_mut().zip(&given.irradiance);
+                light
+                    .with_min_len(4096)
+                    .for_each(|(sum, given)| *sum += *given);
+                lost += given.lost;
+                rays += given.rays;
+            }
+        }
+        self.course.rays += rays;
+        (direct, lost)
+    }
+
+    /// What `irradiance` comes to in all, and what of that is reflected.
+    pub(super) fn totals(&self, irradiance: &[Spectrum]) -> [Power; 2] {
+        let mesh = &self.mesh;
+        let mut totals = [Power::ZERO; 2];
+        let at = |vertex: usize| {
+            let patch = mesh.vertices.patch_of(vertex as u32) as usize;
+            let arrived = irradiance[vertex].as_dvec3() * mesh.weights[vertex];
+            [
+                arrived,
+                mesh.patches.reflectance(patch).as_dvec3() * arrived,
+            ]
+        };
+        in_order(irradiance.len(), at, |[arrived, returned]| {
+            totals[0] += arrived;
+            totals[1] += returned;
+        });
+        totals
+    }
+}
