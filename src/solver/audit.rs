@@ -119,7 +119,10 @@ impl Solver<'_> {
         let off = errors().sum::<Power>().element_sum() / count;
         // What all reflections make of a unit of light.
         let amplification = leaving.element_sum() / self.emitted().element_sum();
-        let received = off + self.beyond_interpolant(&fans);
+        let of_points = errors().map(|e| (e.element_sum() / 3.0 - off).powi(2));
+        let variance = of_points.sum::<f64>() / (places.len() as f64).powi(2);
+        let received = (off + self.beyond_interpolant(&fans), variance);
+        let received = self.known_of_power(&whole, received);
         let bias = off + received * (amplification - 1.0).max(0.0);
         let spread = (square - off * off).max(0.0);
         let found = places.iter().zip(errors()).map(|(place, error)| {
@@ -136,6 +139,21 @@ impl Solver<'_> {
             received_sum: Span::of(factors.iter().map(|f| (*f, 1.0))).unwrap_or_default(),
             sent_sum: self.course.sent_sum,
         })
+    }
+
+    /// A mean error of what surfaces receive, found with a variance, with what is known of it from the balance of power: in a closed scene that is
+    /// known better than from points. Each counts by its variance.
+    fn known_of_power(&self, whole: &Light, (found, variance): (f64, f64)) -> f64 {
+        let was_gathered = self.course.sent_sum.is_some();
+        if !was_gathered {
+            return found;
+        }
+        let passage = self.passage_of_all(&self.light.irradiance, &self.course.lost, whole);
+        let area = self.mesh.weights.iter().sum::<f64>();
+        let (excess, deviation) = passage.excess();
+        let mean = |of: Power| of.element_sum() / (3.0 * area);
+        let balanced = mean(deviation).powi(2);
+        (found * balanced + mean(excess) * variance) / (balanced + variance)
     }
 
     /// By how much what surfaces receive exceeds what the interpolant on their fans has, in the mean of all points and channels, W/m².

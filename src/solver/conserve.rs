@@ -9,6 +9,7 @@
 use super::escape::{Lost, rays_for};
 use super::light::{Light, Sign};
 use super::run::Solver;
+use super::shoot::Shooter;
 use super::sums::in_order;
 use super::volley::{Giver, gathered};
 use crate::radiometry::{Power, Spectrum};
@@ -43,6 +44,13 @@ pub(super) struct Level {
     pub arrived: Spectrum,
 }
 
+impl Level {
+    pub const AS_IT_IS: Self = Self {
+        sent: Spectrum::ONE,
+        arrived: Spectrum::ONE,
+    };
+}
+
 impl Passage {
     /// The level at which reflected light, sent as this, conserves power; of direct light `first` is reflected.
     pub fn level(&self, first: Power) -> Level {
@@ -60,14 +68,20 @@ impl Passage {
 
     /// What was sent and not lost over what arrived, as far as the difference is more than the rays' that found what is lost.
     fn closing(&self) -> Power {
+        let (excess, deviation) = self.excess();
+        let noise = SURE * deviation / excess;
+        let part = Power::ONE - noise * noise;
+        let is_known = self.arrived.cmpgt(Power::ZERO) & part.cmpgt(Power::ZERO);
         let arrived = self.arrived.max(Power::splat(f64::MIN_POSITIVE));
-        let excess = (self.sent - self.lost) / arrived - Power::ONE;
+        Power::ONE - Power::select(is_known, excess / arrived * part, Power::ZERO)
+    }
+
+    /// What has arrived or was lost beyond what was sent, and one standard deviation of that.
+    pub fn excess(&self) -> (Power, Power) {
+        let excess = self.arrived + self.lost - self.sent;
         let lost = (self.lost / self.sent).clamp(Power::splat(1.0 / self.rays), Power::splat(0.5));
         let deviation = (lost * (Power::ONE - lost) / self.rays).powf(0.5);
-        let noise = SURE * deviation * self.sent / arrived;
-        let part = Power::ONE - (noise / excess) * (noise / excess);
-        let is_known = self.arrived.cmpgt(Power::ZERO) & part.cmpgt(Power::ZERO);
-        Power::ONE + Power::select(is_known, excess * part, Power::ZERO)
+        (excess, deviation * self.sent)
     }
 
     /// Whether, with all that is `emitted` in what was sent, power is out of balance by more than a part of the tolerance of it.
@@ -88,27 +102,12 @@ impl Solver<'_> {
         whole: &Light,
     ) -> Spectrum {
         let emitted = self.emitted();
-        let (mut sent, mut spread) = (Power::ZERO, 0.0);
-        for patch in 0..self.mesh.patches.len() {
-            let power = whole.unshot_power(&self.mesh, patch, Sign::Positive);
-            let part = power.element_sum() / emitted.element_sum();
-            sent += power;
-            spread += part * part / rays_for(part);
-        }
-        let part = sent.element_sum() / emitted.element_sum();
-        let [arrived, returned] = self.totals(irradiance);
-        let all = Passage {
-            sent,
-            lost: lost.all,
-            rays: part * part / spread,
-            arrived,
-            returned,
-        };
+        let all = self.passage_of_all(irradiance, lost, whole);
         if !all.is_out_of_balance(emitted, self.options.tolerance) {
             return Spectrum::ONE;
         }
         let (direct, lost_directly) = self.direct();
-        let [arrived, returned] = self.totals(&direct);
+        let [arrived, returned] = self.totals(|vertex| direct[vertex]);
         let reflected = Passage {
             sent: all.sent - emitted,
             lost: all.lost - lost_directly.all,
@@ -121,6 +120,62 @@ impl Solver<'_> {
         light.for_each(|(all, direct)| *all = *direct + (*all - *direct) * level.arrived);
         *lost = lost_directly + (*lost + lost_directly * -Power::ONE) * level.sent.as_dvec3();
         level.sent
+    }
+
+    /// What a shot of one sign sent (in all, and as a fraction of what is emitted) and lost, with what has come of it to each vertex.
+    pub(super) fn passage(
+        &self,
+        (sent, power, sign): (Power, f64, Sign),
+        lost: &Lost,
+        arrived: &[Spectrum],
+    ) -> Passage {
+        let positive = f64::from(sign.factor());
+        let [arrived, returned] = self.totals(|vertex| arrived[vertex]);
+        Passage {
+            sent,
+            lost: lost.all * positive,
+            rays: rays_for(power),
+            arrived: arrived * positive,
+            returned: returned * positive,
+        }
+    }
+
+    /// What a shot from `patch` is to be multiplied by so that what is sent arrives or is lost, if that is known. Direct light stays as it is: at
+    /// each vertex it is right, and it comes once.
+    pub(super) fn closing_of_shot(&self, patch: usize, of: &Passage) -> Option<Spectrum> {
+        let closing = of.closing();
+        let is_reflected = self.mesh.patches.at(patch).exitance == Spectrum::ZERO;
+        (is_reflected && closing != Power::ONE).then(|| closing.as_vec3())
+    }
+
+    /// That of a gathering from `whole`.
+    pub(super) fn passage_of_all(
+        &self,
+        irradiance: &[Spectrum],
+        lost: &Lost,
+        whole: &Light,
+    ) -> Passage {
+        let emitted = self.emitted().element_sum();
+        let (mut sent, mut spread) = (Power::ZERO, 0.0);
+        let power = |patch| whole.unshot_power(&self.mesh, patch, Sign::Positive);
+        in_order(self.mesh.patches.len(), power, |power| {
+            let part = power.element_sum() / emitted;
+            sent += power;
+            spread += part * part / rays_for(part);
+        });
+        let part = sent.element_sum() / emitted;
+        let rays = match self.is_clustered() {
+            true => rays_for(1.0),
+            false => part * part / spread,
+        };
+        let [arrived, returned] = self.totals(|vertex| irradiance[vertex]);
+        Passage {
+            sent,
+            lost: lost.all,
+            rays,
+            arrived,
+            returned,
+        }
     }
 
     /// The light of the emitters alone, gathered.
@@ -151,19 +206,71 @@ impl Solver<'_> {
         (direct, lost)
     }
 
-    /// What `irradiance` comes to in all, and what of that is reflected.
-    pub(super) fn totals(&self, irradiance: &[Spectrum]) -> [Power; 2] {
+    /// The same of what clusters sent: `arrived`, with the direct light that was kept, is the light there is. What is unshot becomes what
+    /// that is beyond the power that was sent, which an interpolant of what was sent has no more once the mesh is refined.
+    pub(super) fn conserve_clusters(&mut self, arrived: &[Spectrum], all: &Shooter) {
+        let Shooter::All { tiling, .. } = all else {
+            return;
+        };
+        let emitted = self.emitted();
+        let light = &self.light;
+        let direct = |vertex: usize| light.irradiance[vertex] - arrived[vertex];
+        let [arrived_directly, returned_directly] = self.totals(direct);
+        if returned_directly == Power::ZERO {
+            // All light was sent, that of the emitters too.
+            return;
+        }
+        let lost = self.escape_of_all(all, 1.0);
+        let powers = tiling.parts().map(|part| part.power.as_dvec3());
+        let [reached, returned] = self.totals(|vertex| arrived[vertex]);
+        let reflected = Passage {
+            sent: powers.sum(),
+            lost: lost.all,
+            rays: rays_for(1.0),
+            arrived: reached,
+            returned,
+        };
+        let whole = Passage {
+            sent: reflected.sent + emitted,
+            lost: self.course.lost.all,
+            arrived: reached + arrived_directly,
+            returned: returned + returned_directly,
+            ..reflected
+        };
+        let level = match whole.is_out_of_balance(emitted, self.options.tolerance) {
+            true => reflected.level(returned_directly),
+            false => Level::AS_IT_IS,
+        };
+        let [_, kept] = self.totals(|vertex| light.irradiance[vertex] - light.unshot[vertex]);
+        let kept = reflected.sent / kept.max(Power::splat(f64::MIN_POSITIVE));
+        let sent = kept.as_vec3() * level.sent;
+        let Light {
+            irradiance, unshot, ..
+        } = &mut self.light;
+        let light = irradiance.par_iter_mut().zip(unshot).zip(arrived);
+        light
+            .with_min_len(4096)
+            .for_each(|((all, unshot), arrived)| {
+                let was_sent = (*all - *unshot) * sent;
+                *all += *arrived * (level.arrived - Spectrum::ONE);
+                *unshot = *all - was_sent;
+            });
+        self.course.lost += lost * (level.sent - Spectrum::ONE).as_dvec3();
+    }
+
+    /// What an irradiance by vertex comes to in all, and what of that is reflected.
+    fn totals(&self, irradiance: impl Fn(usize) -> Spectrum + Sync) -> [Power; 2] {
         let mesh = &self.mesh;
         let mut totals = [Power::ZERO; 2];
         let at = |vertex: usize| {
             let patch = mesh.vertices.patch_of(vertex as u32) as usize;
-            let arrived = irradiance[vertex].as_dvec3() * mesh.weights[vertex];
+            let arrived = irradiance(vertex).as_dvec3() * mesh.weights[vertex];
             [
                 arrived,
                 mesh.patches.reflectance(patch).as_dvec3() * arrived,
             ]
         };
-        in_order(irradiance.len(), at, |[arrived, returned]| {
+        in_order(mesh.weights.len(), at, |[arrived, returned]| {
             totals[0] += arrived;
             totals[1] += returned;
         });

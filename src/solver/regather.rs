@@ -73,7 +73,7 @@ impl Solver<'_> {
         let found = found
             .filter(|(giver, _)| giver.power > much)
             .map(|(giver, of)| {
-                let arrived = (of.received(&self.mesh) + of.lost.all).element_sum();
+                let arrived = (of.arrived + of.lost.all).element_sum();
                 (arrived / giver.power, giver.power)
             });
         so_far.sums.par_extend(found);

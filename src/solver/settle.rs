@@ -88,6 +88,7 @@ impl Solver<'_> {
         let sampler = self.sampler();
         self.pass(&mut shot, &sampler, &all);
         if shot.candidates.is_empty() {
+            self.conserve_clusters(&shot.arrived.irradiance, &all);
             self.course.sent_sum = self.sent_sum();
             self.course.stage = Stage::Finished;
         } else {

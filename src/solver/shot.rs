@@ -11,7 +11,7 @@ use super::run::Solver;
 use super::shoot::{Beam, Shooter, faces};
 use super::source::{cells_of, source_from};
 use crate::form_factor::{Cell, Sampler, Source};
-use crate::radiometry::Spectrum;
+use crate::radiometry::{Power, Spectrum};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -105,10 +105,26 @@ impl<'a> Solver<'a> {
 
     pub(super) fn end_shot(&mut self, mut shot: Shot) {
         if let Some(shooter) = shot.made.take() {
-            self.course.lost += self.escape_of(&shot, &shooter);
+            let lost = self.escape_of(&shot, &shooter);
+            self.course.lost += lost;
+            if let Shooter::Patch(source) = &shooter {
+                self.close(&shot, source, &lost);
+            }
             self.keep_tiling(shooter);
         }
         self.course.shots += 1;
+    }
+
+    /// What has arrived of a shot is brought to what was sent and not lost.
+    fn close(&mut self, shot: &Shot, source: &Source, lost: &Lost) {
+        let cells = source.finest().map(|(_, power)| power.as_dvec3());
+        let sent = cells.sum::<Power>();
+        let arrived = &shot.arrived.irradiance;
+        let passage = self.passage((sent, shot.power, shot.sign), lost, arrived);
+        if let Some(closing) = self.closing_of_shot(shot.shooter as usize, &passage) {
+            let more = closing - Spectrum::ONE;
+            self.light.receive(arrived.par_iter().map(|e| *e * more));
+        }
     }
 
     /// What escapes of the shot that is under way.

@@ -3,6 +3,7 @@
 //! One such shot has little work on each level of the quadtree, too little to share out evenly. What one of them sends
 //! to another stays unshot until that one's next turn.
 
+use super::arrived::Arrived;
 use super::escape::Lost;
 use super::light::{Light, Sign};
 use super::run::Solver;
@@ -35,16 +36,10 @@ pub(super) struct Giver {
 pub(super) struct Given {
     /// By vertex.
     pub irradiance: Vec<Spectrum>,
+    /// The power that arrived before it was closed, without the sign.
+    pub arrived: Power,
     pub lost: Lost,
     pub rays: u64,
-}
-
-impl Given {
-    /// The power that arrives.
-    pub fn received(&self, mesh: &Mesh) -> Power {
-        let received = self.irradiance.iter().zip(&mesh.weights);
-        received.map(|(e, w)| e.as_dvec3() * *w).sum()
-    }
 }
 
 impl Solver<'_> {
@@ -64,12 +59,22 @@ impl Solver<'_> {
             shooter: &shooter,
             sign,
         };
-        let (arrived, rays) = self.arrivals(beam, patch, &reached);
+        let (Arrived { mut irradiance, .. }, rays) = self.arrivals(beam, patch, &reached);
         let power = power / self.emitted().element_sum();
         let seed = self.course.shots as u32 + patch as u32;
+        let lost = self.escape(patch, &shooter, power, seed) * f64::from(sign.factor());
+        let sent = light.unshot_power(&self.mesh, patch, sign);
+        let passage = self.passage((sent, power, sign), &lost, &irradiance);
+        if let Some(closing) = self.closing_of_shot(patch, &passage) {
+            irradiance
+                .par_iter_mut()
+                .with_min_len(4096)
+                .for_each(|e| *e *= closing);
+        }
         Given {
-            irradiance: arrived.irradiance,
-            lost: self.escape(patch, &shooter, power, seed) * f64::from(sign.factor()),
+            irradiance,
+            arrived: passage.arrived,
+            lost,
             rays,
         }
     }

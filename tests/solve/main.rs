@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bright;
 mod clusters;
 mod conforming;
 mod contact;
