@@ -21,8 +21,12 @@ const NEGLIGIBLE: f64 = 0.25;
 /// Light is not multiplied by more than this, nor by less than one over it.
 const MOST: f64 = 2.0;
 
+/// A shot is brought to what it sent by no more than this part of it. What is further off has gone wrong in one place, beside a contact maybe, and is
+/// right in all others.
+const MOST_OF_A_SHOT: f64 = 0.003;
+
 /// What is lost is known to so many standard deviations.
-const SURE: f64 = 2.0;
+const SURE: f64 = 3.0;
 
 /// What a gathering sent, and what became of it; powers over the whole scene.
 #[derive(Debug, Clone, Copy)]
@@ -143,7 +147,8 @@ impl Solver<'_> {
     /// What a shot from `patch` is to be multiplied by so that what is sent arrives or is lost, if that is known. Direct light stays as it is: at
     /// each vertex it is right, and it comes once.
     pub(super) fn closing_of_shot(&self, patch: usize, of: &Passage) -> Option<Spectrum> {
-        let closing = of.closing();
+        let bounds = [1.0 - MOST_OF_A_SHOT, 1.0 + MOST_OF_A_SHOT].map(Power::splat);
+        let closing = of.closing().clamp(bounds[0], bounds[1]);
         let is_reflected = self.mesh.patches.at(patch).exitance == Spectrum::ZERO;
         (is_reflected && closing != Power::ONE).then(|| closing.as_vec3())
     }
