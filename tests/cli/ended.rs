@@ -1,6 +1,6 @@
 //! What ends a solve before it has converged, and how that is said.
 
-use super::{Run, folder, radiosity, scene, text};
+use super::{Run, folder, radiosity, report, scene, text};
 use std::fs;
 use std::path::Path;
 
@@ -17,8 +17,7 @@ fn reported(command: &str, of: &Path, output: &Path, more: &[&str]) -> (Run, ser
     let begin = [command, text(of), "-o", text(output), "--no-pictures"];
     let run = radiosity(&[&begin[..], &["--formats", "none"], more].concat());
     run.assert_success();
-    let json = fs::read(output.join("report.json")).expect("was written");
-    (run, serde_json::from_slice(&json).expect("is JSON"))
+    (run, report(output))
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Checkpoints, `resume`, `--from` and limits.
 
-use super::{Run, command, draft, folder, names, radiosity, scene, text};
-use radiosity::solution::{Seconds, Solution};
+use super::{
+    RESULTS, Run, command, common, draft, folder, names, radiosity, report, scene, solution, text,
+};
 use radiosity::solver::{Preset, StopReason};
 use std::fs;
-use std::io::Cursor;
 use std::path::Path;
 use std::process::Stdio;
 use std::thread::sleep;
@@ -18,14 +18,7 @@ fn run(arguments: &[&[&str]]) -> Run {
 
 /// The solution in a folder, without what may differ from run to run.
 fn bits(folder: &Path) -> Vec<u8> {
-    let path = folder.join("solution.rad");
-    let mut solution = Solution::read(&path).unwrap_or_else(|error| panic!("{error}"));
-    solution.report.seconds = Seconds::default();
-    let mut bytes = Cursor::new(Vec::new());
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    bytes.into_inner()
+    common::sessions::bits(solution(folder))
 }
 
 /// Starts a command and kills it after a while, if it has not ended by then. No signal that could be caught.
@@ -74,15 +67,7 @@ fn killed_at_any_moment_a_solve_resumes_to_the_same_bits() {
     assert!(bits(&pieces) == bits(&whole), "after {kills} kills");
     // What the kills have left half-written is cleared away by whoever comes next.
     run(&[&solve, &[text(&pieces)], &DRAFT]).assert_success();
-    let expected = [
-        "report.html",
-        "report.json",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-    ];
-    assert_eq!(names(&pieces), expected);
+    assert_eq!(names(&pieces), RESULTS);
 }
 
 #[test]
@@ -107,24 +92,30 @@ fn a_report_repeats_its_solve_from_anywhere() {
         .args([&solve[..], &options, &engine].concat())
         .output();
     Run::from(solved.expect("can be started")).assert_success();
-    let report = first.join("report.json");
-    let from = ["solve", "--from", text(&report), "--no-pictures", "-o"];
+    let first_report = first.join("report.json");
+    let from = [
+        "solve",
+        "--from",
+        text(&first_report),
+        "--no-pictures",
+        "-o",
+    ];
     run(&[&from, &[text(&second)]]).assert_success();
     assert!(bits(&second) == bits(&first));
     let more = run(&[&from, &[text(&third), "--max-shots", "21"]]);
     more.assert_success();
     assert!(bits(&third) != bits(&first), "flags have the last word");
 
-    fs::write(&report, "{}").expect("can be written");
+    fs::write(&first_report, "{}").expect("can be written");
     run(&[&from, &[text(&second)]]).assert_refused(3, &["report.json", "missing field"]);
-    fs::remove_file(&report).expect("is there");
+    fs::remove_file(&first_report).expect("is there");
     run(&[&from, &[text(&second)]]).assert_refused(3, &["cannot read", "report.json"]);
 }
 
 #[test]
 fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
     let (folder, solved) = draft("cornell-box");
-    let before = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let before = solution(&solved);
     let resumed = run(&[&[
         "resume",
         text(&solved),
@@ -133,7 +124,7 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
         "--no-pictures",
     ]]);
     resumed.assert_success();
-    let after = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let after = solution(&solved);
     assert!(after.report.shots > before.report.shots);
     assert!(after.report.power.unshot.abs() < before.report.power.unshot.abs() + 1e-3);
     assert_eq!(
@@ -168,7 +159,7 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
         text(&output),
     ];
     run(&[&arguments, &["--no-pictures"]]).assert_success();
-    let relit = Solution::read(&output.join("solution.rad")).expect("was written");
+    let relit = solution(&output);
     let ratio = relit.report.power.absorbed / after.report.power.absorbed;
     assert!((ratio - 0.5).abs() < 0.005, "{ratio}");
 
@@ -186,8 +177,7 @@ fn a_preset_takes_the_place_of_a_target_and_of_a_solves_own_options() {
     let resumed = |flags: &[&str]| {
         let resume = ["resume", output, "--no-pictures", "--formats", "none"];
         run(&[&resume, flags]).assert_success();
-        let solution = Solution::read(&folder.path().join("solution.rad"));
-        solution.expect("was written").report
+        solution(folder.path()).report
     };
     assert!(resumed(&[]).target.is_some(), "goes on as it was");
     let report = resumed(&["--preset", "draft"]);
@@ -221,7 +211,7 @@ fn a_solution_that_was_written_stands_even_if_its_meshes_cannot_be() {
         names(&output),
         ["report.json", "solution.glb", "solution.rad"]
     );
-    let solved = Solution::read(&output.join("solution.rad")).expect("was written");
+    let solved = solution(&output);
     assert_eq!(solved.report.stop_reason, StopReason::Converged);
 }
 
@@ -262,10 +252,10 @@ fn limits_end_the_refinement_and_say_so() {
         run.assert_success();
         let warning = format!("warning: {} ended the refinement", limit[0]);
         assert!(run.err.contains(&warning), "{}", run.err);
-        let solution = Solution::read(&output.join("solution.rad")).expect("was written");
-        let json = fs::read(output.join("report.json")).expect("was written");
-        let report: serde_json::Value = serde_json::from_slice(&json).expect("is JSON");
-        (solution.report, report["peak_memory"].as_u64())
+        (
+            solution(&output).report,
+            report(&output)["peak_memory"].as_u64(),
+        )
     };
     let (report, _) = limited(&["--max-elements", "8000"]);
     assert!(

@@ -1,16 +1,10 @@
 //! `radiosity solve`, `radiosity info`.
 
-use super::{Run, command, draft, floor, folder, names, radiosity, scene, text};
-use radiosity::solution::Solution;
-use serde_json::Value;
+use super::{
+    PICTURES, RESULTS, draft, finished, floor, folder, names, radiosity, report, scene, solution,
+    start, text,
+};
 use std::fs;
-use std::path::Path;
-use std::process::Stdio;
-
-fn report(folder: &Path) -> Value {
-    let bytes = std::fs::read(folder.join("report.json")).expect("report.json is there");
-    serde_json::from_slice(&bytes).expect("is JSON")
-}
 
 #[test]
 fn a_solve_leaves_solution_mesh_pictures_and_report() {
@@ -26,27 +20,15 @@ fn a_solve_leaves_solution_mesh_pictures_and_report() {
         "1",
     ]);
     run.assert_success();
-    let expected = [
-        "mesh.png",
-        "report.html",
-        "report.json",
-        "shaded.exr",
-        "shaded.png",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-        "wireframe.png",
-    ];
+    let mut expected = [&RESULTS[..], &PICTURES].concat();
+    expected.sort_unstable();
     assert_eq!(names(folder.path()), expected);
     assert!(
         run.out.contains("Geometry") && run.out.contains("largest number of shots"),
         "{}",
         run.out
     );
-    let stored = Solution::read(&folder.path().join("solution.rad"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(stored.report.shots, 1);
+    assert_eq!(solution(folder.path()).report.shots, 1);
 }
 
 #[test]
@@ -135,15 +117,7 @@ fn threads_and_options_are_those_asked_for() {
     assert_eq!(report["shots"], 3);
     assert_eq!(report["stop_reason"], "max-shots");
     assert_eq!(report["options"]["epsilon_d"], 0.5);
-    let left = [
-        "report.html",
-        "report.json",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-    ];
-    assert_eq!(names(&output), left);
+    assert_eq!(names(&output), RESULTS);
 }
 
 #[test]
@@ -185,30 +159,16 @@ fn a_profile_accounts_for_the_time() {
 #[test]
 fn without_an_emitter_all_is_black_and_a_warning_says_why() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&floor(&folder)),
-        "-o",
-        text(&folder.path().join("out")),
-        "--preset",
-        "draft",
-    ]);
+    let output = folder.path().join("out");
+    let path = floor(&folder);
+    let solve = ["solve", text(&path), "-o", text(&output)];
+    let run = radiosity(&[&solve[..], &["--preset", "draft"]].concat());
     run.assert_success();
     assert!(run.err.contains("no surface emits"), "{}", run.err);
     assert!(run.out.contains("nothing emits"), "{}", run.out);
-    assert_eq!(
-        report(&folder.path().join("out"))["stop_reason"],
-        "no-emitter"
-    );
-    let stored = Solution::read(&folder.path().join("out/solution.rad"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    assert!(
-        stored
-            .light
-            .irradiance
-            .iter()
-            .all(|e| *e == glam::Vec3::ZERO)
-    );
+    assert_eq!(report(&output)["stop_reason"], "no-emitter");
+    let irradiance = solution(&output).light.irradiance;
+    assert!(irradiance.iter().all(|e| *e == glam::Vec3::ZERO));
 }
 
 /// A lamp in a box whose faces look outwards.
@@ -294,17 +254,11 @@ fn a_solve_whose_progress_nobody_reads_any_more_is_not_lost() {
     let folder = folder();
     let output = folder.path().join("out");
     let box_ = scene("cornell-box");
-    let arguments = ["solve", text(&box_), "-o", text(&output), "--no-pictures"];
-    let child = command()
-        .args(arguments)
-        .args(["--preset", "draft", "--progress", "json"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn();
-    let mut child = child.expect("can be started");
+    let solve = ["solve", text(&box_), "-o", text(&output), "--no-pictures"];
+    let more = ["--preset", "draft", "--progress", "json"];
+    let mut child = start(&[&solve[..], &more].concat());
     drop(child.stdout.take());
-    let run: Run = child.wait_with_output().expect("ends").into();
-    run.assert_success();
+    finished(child).assert_success();
     assert!(output.join("solution.rad").exists() && output.join("report.json").exists());
 }
 
