@@ -154,6 +154,11 @@ impl Corners {
         }
     }
 
+    /// Where they are, if vertices lie at these positions.
+    pub fn places<'a>(&'a self, positions: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
+        self.indices().iter().map(|v| positions[*v as usize])
+    }
+
     /// As triangles with the same front: one, or the two that the diagonal from the first corner leaves.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         let corners = self.indices();
