@@ -94,6 +94,7 @@ mod weld;
 pub(crate) use backs::back_to_back;
 pub(crate) use compare::check_unit;
 pub use error::SceneError;
+pub(crate) use load::geometry_of;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};
 

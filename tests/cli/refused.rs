@@ -177,12 +177,15 @@ fn a_result_never_replaces_a_file_of_the_scene() {
     let other = ["solve", text(&lit), "-o", text(&lit), "--no-pictures"];
     radiosity(&other).assert_success();
 
-    // Nor when a solve of it goes on elsewhere.
-    let ply = lit.join("solution.ply");
+    // Nor when a solve of it goes on elsewhere, whether its geometry was named or its folder.
     let first = folder.path().join("first");
-    let solve = ["solve", text(&ply), "-o", text(&first), "--no-pictures"];
-    radiosity(&solve).assert_success();
-    radiosity(&["resume", text(&first), "-o", text(&lit)]).assert_refused(2, &["solution.ply"]);
+    for (scene, format) in [(lit.join("solution.ply"), "ply"), (lit.clone(), "obj")] {
+        let solve = ["solve", text(&scene), "-o", text(&first), "--no-pictures"];
+        radiosity(&solve).assert_success();
+        let resume = ["resume", text(&first), "-o", text(&lit)];
+        let lost = format!("solution.{format}");
+        radiosity(&[&resume[..], &["--formats", format]].concat()).assert_refused(2, &[&lost]);
+    }
 }
 
 #[test]
