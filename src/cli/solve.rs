@@ -63,7 +63,7 @@ pub(super) struct How {
     pub no_html: bool,
     /// How progress is shown
     #[arg(long, value_enum, value_name = "LOOK", default_value = "auto")]
-    progress: Look,
+    pub progress: Look,
     /// Show the solution in a window while it converges (feature `viewer`); closing it lets the solve go on, Ctrl-C ends it
     #[arg(long)]
     watch: bool,
@@ -79,11 +79,6 @@ pub(super) struct How {
 }
 
 impl How {
-    /// How progress is shown.
-    pub(super) fn look(&self) -> Look {
-        self.progress
-    }
-
     /// Takes note of `--quiet`, and finds out whether there can be a window where one is asked for.
     pub(super) fn begin(&self) -> Result<Option<Watching>, CliError> {
         if self.quiet {
