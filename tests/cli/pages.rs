@@ -128,6 +128,14 @@ fn every_round_on_the_way_to_an_error_has_its_estimate_in_the_plot() {
 }
 
 #[test]
+fn durations_and_counts_read_as_text() {
+    let target = ["--target-error", "20%", "--time-limit", "1.5h"];
+    let html = page(&[&target[..], &["--no-pictures", "--formats", "none"]].concat());
+    assert!(html.contains(">5400 s<"), "{html}");
+    assert!(html.contains(", reached in 1 solve<"), "{html}");
+}
+
+#[test]
 fn without_pictures_the_page_has_none() {
     let short = ["--preset", "draft", "--max-shots", "2"];
     let html = page(&[&short[..], &["--no-pictures", "--formats", "none"]].concat());
