@@ -91,7 +91,7 @@ fn many_warnings_are_counted() {
     assert_eq!(said, 21, "{}", run.err);
     let last = run.err.lines().last().unwrap_or_default();
     assert!(
-        last.contains("more warnings; all of them are in the report"),
+        last.contains("more warnings; the report of a solve has all of them"),
         "{last}"
     );
 }
