@@ -127,6 +127,7 @@ const CLI: &[&str] = &[
     "geometry",
     "radiometry",
     "scene",
+    "threads",
     "visibility",
     "form_factor",
     "mesh",
