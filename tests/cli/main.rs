@@ -92,6 +92,13 @@ fn radiosity<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Run {
         .into()
 }
 
+/// `radiosity solve`, with flags between which there are spaces.
+fn solve(scene: &Path, output: &Path, flags: &str) -> Run {
+    let solve = ["solve", text(scene), "-o", text(output)];
+    let flags: Vec<&str> = flags.split_whitespace().collect();
+    radiosity(&[&solve[..], &flags].concat())
+}
+
 /// Starts the command and keeps what it prints.
 fn start<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Child {
     command()
@@ -165,16 +172,7 @@ fn two_cameras(folder: &TempDir, side: u32) -> PathBuf {
 fn draft(name: &str) -> (TempDir, PathBuf) {
     let folder = folder();
     let output = folder.path().join("solved");
-    radiosity(&[
-        "solve",
-        text(&scene(name)),
-        "-o",
-        text(&output),
-        "--preset",
-        "draft",
-        "--no-pictures",
-    ])
-    .assert_success();
+    solve(&scene(name), &output, "--preset draft --no-pictures").assert_success();
     (folder, output)
 }
 

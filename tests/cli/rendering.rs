@@ -1,6 +1,6 @@
 //! `radiosity render`.
 
-use super::{PICTURES, draft, folder, names, radiosity, text, two_cameras};
+use super::{PICTURES, draft, folder, names, radiosity, solve, text, two_cameras};
 use std::path::Path;
 
 /// Width and height of a PNG file.
@@ -61,8 +61,7 @@ fn another_camera_leaves_the_pictures_of_the_first_alone() {
     let folder = folder();
     let scene = two_cameras(&folder, 16);
     let output = folder.path().join("solved");
-    let solve = ["solve", text(&scene), "-o", text(&output)];
-    radiosity(&[&solve[..], &["--formats", "none"]].concat()).assert_success();
+    solve(&scene, &output, "--formats none").assert_success();
     let drawn = |flags: &[&str]| {
         let render = ["render", text(&output), "--camera", "second"];
         radiosity(&[&render[..], flags].concat()).assert_success();

@@ -1,7 +1,8 @@
 //! Checkpoints, `resume`, `--from` and limits.
 
 use super::{
-    RESULTS, Run, command, common, draft, folder, names, radiosity, report, scene, solution, text,
+    RESULTS, Run, command, common, draft, folder, names, radiosity, report, scene, solution, solve,
+    text,
 };
 use radiosity::solver::{Preset, StopReason};
 use std::fs;
@@ -171,10 +172,10 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
 #[test]
 fn a_preset_takes_the_place_of_a_target_and_of_a_solves_own_options() {
     let folder = folder();
-    let (output, geometry) = (text(folder.path()), scene("geometry"));
-    let solve = ["solve", text(&geometry), "-o", output, "--no-pictures"];
-    run(&[&solve, &["--target-error", "20%"]]).assert_success();
+    let flags = "--no-pictures --target-error 20%";
+    solve(&scene("geometry"), folder.path(), flags).assert_success();
     let resumed = |flags: &[&str]| {
+        let output = text(folder.path());
         let resume = ["resume", output, "--no-pictures", "--formats", "none"];
         run(&[&resume, flags]).assert_success();
         solution(folder.path()).report
@@ -202,10 +203,8 @@ fn a_solution_that_was_written_stands_even_if_its_meshes_cannot_be() {
     let folder = folder();
     let output = folder.path().join("out");
     fs::create_dir_all(output.join("solution.glb")).expect("can be made");
-    let geometry = scene("geometry");
-    let solve = ["solve", text(&geometry), "-o", text(&output)];
-    let more = ["--checkpoint", "1h", "--formats", "glb"];
-    run(&[&solve, &DRAFT, &more]).assert_refused(1, &["solution.glb"]);
+    let flags = "--preset draft --no-pictures --checkpoint 1h --formats glb";
+    solve(&scene("geometry"), &output, flags).assert_refused(1, &["solution.glb"]);
     // Without a checkpoint, from which `resume` would begin anew.
     assert_eq!(
         names(&output),
@@ -238,33 +237,27 @@ fn what_cannot_be_resumed_is_refused() {
 fn limits_end_the_refinement_and_say_so() {
     let folder = folder();
     let cornell = scene("cornell-box");
-    let limited = |limit: &[&str]| {
-        let output = folder.path().join(limit[0].trim_start_matches('-'));
-        let arguments = [
-            "solve",
-            text(&cornell),
-            "-o",
-            text(&output),
-            "--no-pictures",
-        ];
-        let options = ["--engine", "obvhs", "--tolerance", "0.05"];
-        let run = run(&[&arguments, &options, limit]);
+    let limited = |limit: &str| {
+        let flag = limit.split(' ').next().unwrap_or_default();
+        let output = folder.path().join(flag.trim_start_matches('-'));
+        let flags = format!("--no-pictures --engine obvhs --tolerance 0.05 {limit}");
+        let run = solve(&cornell, &output, &flags);
         run.assert_success();
-        let warning = format!("warning: {} ended the refinement", limit[0]);
+        let warning = format!("warning: {flag} ended the refinement");
         assert!(run.err.contains(&warning), "{}", run.err);
         (
             solution(&output).report,
             report(&output)["peak_memory"].as_u64(),
         )
     };
-    let (report, _) = limited(&["--max-elements", "8000"]);
+    let (report, _) = limited("--max-elements 8000");
     assert!(
         (7000..=8100).contains(&report.elements),
         "{}",
         report.elements
     );
     let limit: u64 = 80 << 20;
-    let (report, peak) = limited(&["--memory-limit", "80MiB"]);
+    let (report, peak) = limited("--memory-limit 80MiB");
     assert!(report.elements > 7000, "{}", report.elements);
     assert!(peak.is_none_or(|peak| peak <= limit), "{peak:?}");
 }
@@ -279,19 +272,13 @@ fn a_scene_that_does_not_fit_into_the_memory_limit_is_refused_with_the_cause() {
     }
     fs::write(&path, obj).expect("can be written");
     let output = folder.path().join("out");
-    let arguments = [
-        "solve",
-        text(&path),
-        "-o",
-        text(&output),
-        "--memory-limit",
-        "1MiB",
-    ];
-    let obvhs = run(&[&arguments, &["--engine", "obvhs"]]);
+    let limited = |engine: &str| {
+        let flags = format!("--memory-limit 1MiB --engine {engine}");
+        solve(&path, &output, &flags)
+    };
     let words = ["40000 triangles", "1 MiB may be used", "--memory-limit"];
-    obvhs.assert_refused(1, &words);
+    limited("obvhs").assert_refused(1, &words);
     if cfg!(embree) {
-        run(&[&arguments, &["--engine", "embree"]])
-            .assert_refused(1, &["Embree cannot", "out of memory", "1 MiB"]);
+        limited("embree").assert_refused(1, &["Embree cannot", "out of memory", "1 MiB"]);
     }
 }

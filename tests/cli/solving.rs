@@ -2,23 +2,15 @@
 
 use super::{
     PICTURES, RESULTS, draft, finished, floor, folder, names, radiosity, report, scene, solution,
-    start, text,
+    solve, start, text,
 };
 use std::fs;
 
 #[test]
 fn a_solve_leaves_solution_mesh_pictures_and_report() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&scene("geometry")),
-        "-o",
-        text(folder.path()),
-        "--preset",
-        "draft",
-        "--max-shots",
-        "1",
-    ]);
+    let flags = "--preset draft --max-shots 1";
+    let run = solve(&scene("geometry"), folder.path(), flags);
     run.assert_success();
     let mut expected = [&RESULTS[..], &PICTURES].concat();
     expected.sort_unstable();
@@ -90,27 +82,8 @@ fn the_report_holds_every_figure() {
 fn threads_and_options_are_those_asked_for() {
     let folder = folder();
     let output = folder.path().join("new/and/deep");
-    let arguments = [
-        "--preset",
-        "draft",
-        "--no-pictures",
-        "--threads",
-        "1",
-        "--engine",
-        "obvhs",
-        "--max-shots",
-        "3",
-        "--eps-d",
-        "0.5",
-    ];
-    let run = radiosity(
-        &[
-            &["solve", text(&scene("cornell-box")), "-o", text(&output)],
-            &arguments[..],
-        ]
-        .concat(),
-    );
-    run.assert_success();
+    let flags = "--preset draft --no-pictures --threads 1 --engine obvhs --max-shots 3 --eps-d 0.5";
+    solve(&scene("cornell-box"), &output, flags).assert_success();
     let report = report(&output);
     assert_eq!(report["threads"], 1);
     assert_eq!(report["engine"]["name"], "obvhs");
@@ -123,16 +96,8 @@ fn threads_and_options_are_those_asked_for() {
 #[test]
 fn a_profile_accounts_for_the_time() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&scene("cornell-box")),
-        "-o",
-        text(folder.path()),
-        "--preset",
-        "draft",
-        "--no-pictures",
-        "--profile",
-    ]);
+    let flags = "--preset draft --no-pictures --profile";
+    let run = solve(&scene("cornell-box"), folder.path(), flags);
     run.assert_success();
     for part in ["build engine", "shoot", "gather", "rays took"] {
         assert!(run.out.contains(part), "no {part}: {}", run.out);
@@ -160,9 +125,7 @@ fn a_profile_accounts_for_the_time() {
 fn without_an_emitter_all_is_black_and_a_warning_says_why() {
     let folder = folder();
     let output = folder.path().join("out");
-    let path = floor(&folder);
-    let solve = ["solve", text(&path), "-o", text(&output)];
-    let run = radiosity(&[&solve[..], &["--preset", "draft"]].concat());
+    let run = solve(&floor(&folder), &output, "--preset draft");
     run.assert_success();
     assert!(run.err.contains("no surface emits"), "{}", run.err);
     assert!(run.out.contains("nothing emits"), "{}", run.out);
@@ -183,14 +146,7 @@ fn a_room_turned_inside_out_is_said_to_lose_its_light() {
     fs::write(&path, format!("mtllib room.mtl\n{room}{lamp}")).expect("can be written");
     fs::write(folder.path().join("room.mtl"), materials).expect("can be written");
     let output = folder.path().join("out");
-    let run = radiosity(&[
-        "solve",
-        text(&path),
-        "-o",
-        text(&output),
-        "--preset",
-        "draft",
-    ]);
+    let run = solve(&path, &output, "--preset draft");
     run.assert_success();
     let warning = "light falls on the backs of surfaces that radiate from the front only: 100% of the emitted power";
     assert!(run.err.contains(warning), "{}", run.err);
@@ -211,8 +167,7 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
         fs::write(&path, scene).expect("can be written");
         let materials = "newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n";
         fs::write(folder.path().join("lit.mtl"), materials).expect("can be written");
-        let output = folder.path().join("out");
-        let run = radiosity(&["solve", text(&path), "-o", text(&output)]);
+        let run = solve(&path, &folder.path().join("out"), "");
         run.assert_success();
         run.err
     };
@@ -226,18 +181,16 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
 fn options_that_clusters_pass_over_are_warned_of_once() {
     let folder = folder();
     let (path, output) = (floor(&folder), folder.path().join("out"));
-    let solve = |more: &[&str]| {
-        let solve = ["solve", text(&path), "-o", text(&output), "--no-pictures"];
-        let run = radiosity(&[&solve[..], more].concat());
+    let said = |flags: &str| {
+        let run = solve(&path, &output, &format!("--no-pictures {flags}"));
         run.assert_success();
         run.err
     };
     let begin = "no effect on patches that shoot as clusters";
-    let formula = ["--form-factor", "polygon"];
-    let options = [&["--raw-form-factors", "--shooting", "mean"][..], &formula].concat();
-    assert!(!solve(&options).contains(begin), "one patch is no cluster");
-    assert!(!solve(&["--cluster-from", "0"]).contains(begin));
-    let said = solve(&[&options[..], &["--cluster-from", "0"]].concat());
+    let options = "--raw-form-factors --shooting mean --form-factor polygon";
+    assert!(!said(options).contains(begin), "one patch is no cluster");
+    assert!(!said("--cluster-from 0").contains(begin));
+    let said = said(&format!("{options} --cluster-from 0"));
     let warning = format!(
         "{begin}, as all do with more than 0 (cluster_from): raw_form_factors, shooting = mean, form_factor = polygon"
     );
