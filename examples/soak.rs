@@ -16,16 +16,16 @@
 mod common;
 
 use clap::Parser;
+use common::sessions::{Batches, bits, file};
 use common::shapes::{add_cuboid, add_quad, empty};
 use fastrand::Rng;
 use glam::{DQuat, DVec3, EulerRot, Vec3};
 use radiosity::scene::{Material, Scene, Sides};
-use radiosity::solution::{Prober, Seconds, Solution};
-use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent};
+use radiosity::solution::{Prober, Solution};
+use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Run, Settings, solve};
 use std::f64::consts::TAU;
-use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -144,7 +144,7 @@ fn repeat(runs: usize, preset: Preset) -> ExitCode {
                     threads: [1, 2, 7, 64][run % 4],
                     ..Settings::default()
                 };
-                solve(&scene, &settings, &mut Silent).map(bits)
+                solve(&scene, &settings, &mut Silent).map(threadless)
             };
             let Ok(first) = solved(0) else {
                 println!("{name}: no {engine} here");
@@ -184,7 +184,7 @@ fn check(seed: u64, preset: Preset, worst: &mut [Worst; 3]) -> Result<(), String
     worst[0].take(seed, (power.residual / power.emitted).abs());
 
     let resumed = in_sessions(&scene, &with(EngineChoice::Obvhs, 1), rng.usize(1..40))?;
-    if bits(resumed) != bits(known.clone()) {
+    if threadless(resumed) != threadless(known.clone()) {
         return Err("in sessions it ends with other bits".into());
     }
     if let Ok(other) = solved(&with(EngineChoice::Embree, 0)) {
@@ -312,19 +312,6 @@ fn place_anywhere(scene: &mut Scene, rng: &mut Rng) {
     move_from(scene, 0, |p| (turn * p + away) * scale);
 }
 
-/// Stops after some batches of work.
-struct Batches(usize);
-
-impl Observer for Batches {
-    fn progress(&mut self, _: &Progress) -> Control {
-        if self.0 == 0 {
-            return Control::Stop;
-        }
-        self.0 -= 1;
-        Control::Continue
-    }
-}
-
 /// Three sessions, with a file between them.
 fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> Result<Solution, String> {
     let text = |error: radiosity::SolveError| error.to_string();
@@ -338,18 +325,10 @@ fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> Result<Solution
     Ok(run.finish())
 }
 
-fn bits(mut solution: Solution) -> Vec<u8> {
-    solution.report.seconds = Seconds::default();
+/// The bits, but for the number of threads.
+fn threadless(mut solution: Solution) -> Vec<u8> {
     solution.report.threads = 0;
-    file(&solution)
-}
-
-fn file(solution: &Solution) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    bytes.into_inner()
+    bits(solution)
 }
 
 /// nRMS difference of the irradiance at the middles of the elements, by area.

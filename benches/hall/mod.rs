@@ -1,5 +1,11 @@
 //! Halls of the same furniture, as large as one likes.
 
+#[allow(dead_code, reason = "a hall is made of cuboids alone")]
+#[path = "../../tests/common/shapes.rs"]
+mod shapes;
+
+use glam::DVec3;
+use shapes::{CUBOID, cuboid_corner};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use std::path::Path;
@@ -66,16 +72,10 @@ impl Hall {
     }
 
     fn cuboid(&mut self, low: [f64; 3], high: [f64; 3], inwards: bool) {
-        let corner = |n: usize| [0, 1, 2].map(|i| if n >> i & 1 == 0 { low[i] } else { high[i] });
-        let corners: [usize; 8] = std::array::from_fn(|n| self.vertex(corner(n)));
-        for [a, b, c, d] in [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ] {
+        let ends = [low, high].map(DVec3::from);
+        let corners: [usize; 8] =
+            std::array::from_fn(|number| self.vertex(cuboid_corner(number, ends).to_array()));
+        for [a, b, c, d] in CUBOID {
             for [a, b, c] in [[a, b, c], [a, c, d]] {
                 let [b, c] = if inwards { [c, b] } else { [b, c] };
                 self.triangle([a, b, c].map(|n| corners[n]));

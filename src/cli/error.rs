@@ -51,7 +51,7 @@ pub(super) enum CliError {
     /// Flags that cannot be meant, alone or of this input.
     #[error("{0}")]
     Usage(String),
-    /// An input that is not a scene or solution.
+    /// An input that is not what it should be.
     #[error("{0}")]
     Input(String),
     /// Something else that the system refused.

@@ -2,7 +2,7 @@
 
 use super::CliError;
 use super::error::Code;
-use super::heat::{self, write_radiosity};
+use super::heat::{self, Zone, write_radiosity};
 use super::progress::leave_nothing_on_interrupt;
 use super::say;
 use super::values::{cut_off, named, positive, threads};
@@ -55,6 +55,18 @@ pub(super) struct Arguments {
     /// Threads; 0 for as many as the machine has
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
+}
+
+impl Arguments {
+    fn options(&self) -> Options {
+        Options {
+            by: self.by,
+            max_area: self.max_area,
+            tolerance: self.tolerance,
+            engine: self.engine,
+            threads: self.threads,
+        }
+    }
 }
 
 /// Rows named in a warning.
@@ -113,14 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         .map(heat::read)
         .transpose()?;
     let started = Instant::now();
-    let options = Options {
-        by: arguments.by,
-        max_area: arguments.max_area,
-        tolerance: arguments.tolerance,
-        engine: arguments.engine,
-        threads: arguments.threads,
-    };
-    let enclosure = Enclosure::new(&named, &options)?;
+    let enclosure = Enclosure::new(&named, &arguments.options())?;
     for warning in enclosure.warnings() {
         say::warning(warning);
     }
@@ -134,44 +139,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
         rows: enclosure.rows(),
         notes: &notes,
     };
-    let (certificate, dropped, correction) =
-        if arguments.enforce.is_some() || arguments.solve || zones.is_some() {
-            check_memory(enclosure.rows().len())?;
-            let mut matrix = enclosure.matrix();
-            let correction = match arguments.enforce {
-                Some(Law::Closure) => Some(matrix.enforce_closure()?),
-                Some(Law::Reciprocity) => Some(matrix.enforce_reciprocity()),
-                None => None,
-            };
-            let feed =
-                |sink: &mut Sink<'_>| matrix.each_row(sink).map(|()| matrix.certificate.clone());
-            let (certificate, dropped) = write(format, arguments, &table, feed)?;
-            if arguments.solve || zones.is_some() {
-                write_radiosity(
-                    &beside(&arguments.output, "radiosity.csv"),
-                    &matrix,
-                    zones.as_deref(),
-                )?;
-            }
-            (certificate, dropped, correction)
-        } else {
-            let feed = |sink: &mut Sink<'_>| enclosure.each_row(|row: &FormFactors<'_>| sink(row));
-            let (certificate, dropped) = write(format, arguments, &table, feed)?;
-            (certificate, dropped, None)
-        };
+    let made = make(format, arguments, &enclosure, &table, zones.as_deref())?;
     let mut warnings = enclosure.warnings().to_vec();
-    warnings.extend(blindness(&certificate, table.rows));
-    warnings.extend(excess(&certificate, table.rows));
+    warnings.extend(blindness(&made.certificate, table.rows));
+    warnings.extend(excess(&made.certificate, table.rows));
     for warning in &warnings[enclosure.warnings().len()..] {
         say::warning(warning);
     }
     let report = Report {
         scene: table.scene,
         options: described(arguments).into(),
-        closed: certificate.is_closed(),
-        certificate: &certificate,
-        correction,
-        dropped,
+        closed: made.certificate.is_closed(),
+        certificate: &made.certificate,
+        correction: made.correction,
+        dropped: made.dropped,
         labels: table.rows.iter().map(|row| row.label.as_str()).collect(),
         areas_m2: table.rows.iter().map(|row| row.area).collect(),
         covered_m2: table.rows.iter().map(|row| row.covered).collect(),
@@ -184,6 +165,52 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     })?;
     say::result(summary(&report))?;
     Ok(Code::Success)
+}
+
+/// What is known of a matrix that was written.
+struct Made {
+    certificate: Certificate,
+    dropped: Option<Dropped>,
+    correction: Option<Correction>,
+}
+
+/// Computes and writes the matrix: row by row, or, where what was asked for takes all of them, as a whole; with the radiosity of `zones`, or
+/// of the materials if that was asked for.
+fn make(
+    format: Format,
+    arguments: &Arguments,
+    enclosure: &Enclosure,
+    table: &MatrixTable<'_>,
+    zones: Option<&[Zone]>,
+) -> Result<Made, CliError> {
+    let is_solved = arguments.solve || zones.is_some();
+    if arguments.enforce.is_none() && !is_solved {
+        let feed = |sink: &mut Sink<'_>| enclosure.each_row(|row: &FormFactors<'_>| sink(row));
+        let (certificate, dropped) = write(format, arguments, table, feed)?;
+        return Ok(Made {
+            certificate,
+            dropped,
+            correction: None,
+        });
+    }
+    check_memory(enclosure.rows().len())?;
+    let mut matrix = enclosure.matrix();
+    let correction = match arguments.enforce {
+        Some(Law::Closure) => Some(matrix.enforce_closure()?),
+        Some(Law::Reciprocity) => Some(matrix.enforce_reciprocity()),
+        None => None,
+    };
+    let feed = |sink: &mut Sink<'_>| matrix.each_row(sink).map(|()| matrix.certificate.clone());
+    let (certificate, dropped) = write(format, arguments, table, feed)?;
+    if is_solved {
+        let path = beside(&arguments.output, "radiosity.csv");
+        write_radiosity(&path, &matrix, zones)?;
+    }
+    Ok(Made {
+        certificate,
+        dropped,
+        correction,
+    })
 }
 
 /// Refuses a matrix for which there is no memory, 8 n² bytes, before it has been worked out.

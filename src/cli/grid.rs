@@ -30,7 +30,7 @@ pub(super) struct GridFlags {
     /// Distance of the points: a number of scene units, or with the unit m, cm, mm, in or ft
     #[arg(long, value_name = "LENGTH", default_value = "0.25m", value_parser = spacing, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     spacing: Length,
-    /// Only between these, in scene units: x from,z from,x to,z to on a plane across y; else the whole scene
+    /// Only between two corners, in scene units: X,Z,X,Z on a plane across y, Z,Y,Z,Y across x, X,Y,X,Y across z; else the whole scene
     #[arg(long, value_name = "A,B,A,B", value_parser = region, allow_hyphen_values = true, requires = "grid", conflicts_with = "points", help_heading = GRID)]
     region: Option<[f64; 4]>,
     /// A picture in false colours with a legend (PNG)
@@ -90,11 +90,7 @@ impl GridFlags {
 
     fn plane(&self, solution: &Solution, at: &PlaneAt) -> Result<Plane, CliError> {
         let (mut low, mut high) = bounds(solution);
-        let (a, b) = match at.axis {
-            0 => (2, 1),
-            1 => (0, 2),
-            _ => (0, 1),
-        };
+        let (a, b) = Plane::sides(at.axis);
         if let Some([from_a, from_b, to_a, to_b]) = self.region {
             (low[a], high[a]) = (from_a.min(to_a), from_a.max(to_a));
             (low[b], high[b]) = (from_b.min(to_b), from_b.max(to_b));

@@ -1,7 +1,7 @@
 //! The memory of the process.
 
-use crate::scene::{NamedScene, Scene, SceneError};
-use std::path::{Path, PathBuf};
+use crate::scene::{Scene, SceneError};
+use std::path::Path;
 use std::{panic, thread};
 
 /// A scene of more surfaces, or a mesh of more patches, is large …
@@ -13,17 +13,11 @@ const LARGE: u32 = 4 << 20;
 
 /// Reads a scene and leaves no more memory behind than it needs. For programs that have the process to themselves.
 pub fn load_scene(file: &Path) -> Result<Scene, SceneError> {
-    Ok(load_with_file(file)?.0)
-}
-
-/// The same, and the file of its geometry.
-pub(super) fn load_with_file(file: &Path) -> Result<(Scene, PathBuf), SceneError> {
-    let read = || NamedScene::load_lit(file).map(|named| (named.scene, named.names.file));
     // A heap of its own, which goes when the thread ends: the thousands of small lists of a file leave a tenth of all memory full of holes.
-    let read = thread::scope(|threads| threads.spawn(read).join());
-    let (scene, geometry) = read.unwrap_or_else(|panicked| panic::resume_unwind(panicked))?;
+    let read = thread::scope(|threads| threads.spawn(|| Scene::load(file)).join());
+    let scene = read.unwrap_or_else(|panicked| panic::resume_unwind(panicked))?;
     hold_less(scene.surfaces.len());
-    Ok((scene, geometry))
+    Ok(scene)
 }
 
 /// Lets a solve with so many patches, or surfaces, hold no more memory than it needs.

@@ -31,8 +31,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let lit = solution.lit_mesh();
     let beside = || folder_of(&arguments.solution);
     let folder = arguments.output.clone().unwrap_or_else(beside);
-    for (number, camera) in cameras.iter().enumerate() {
-        let into = picture_folder(&folder, number, camera);
+    // Beside the solution a camera keeps the place that it had in the solve.
+    let order = match arguments.output {
+        Some(_) => &cameras,
+        None => &solution.cameras,
+    };
+    for camera in &cameras {
+        let number = order.iter().position(|known| known.name == camera.name);
+        let into = picture_folder(&folder, number.unwrap_or(0), camera);
         draw(&lit, camera, (arguments.engine, 0), &into, &|| true)?;
     }
     Ok(Code::Success)

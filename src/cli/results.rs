@@ -3,7 +3,7 @@
 use super::CliError;
 use super::meshes::MeshFormat;
 use super::solve::How;
-use crate::scene::Camera;
+use crate::scene::{Camera, geometry_of};
 use crate::solution::Solution;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -57,22 +57,24 @@ pub(super) fn folder_of(solution: &Path) -> PathBuf {
     }
 }
 
-/// The files of a scene that could lie where a result goes: what was named, its geometry, and what a .gltf names.
-pub(super) fn inputs(scene: &Path, geometry: &Path) -> Vec<PathBuf> {
-    let mut inputs = vec![geometry.to_path_buf()];
-    inputs.push(match scene.is_dir() {
+/// The files of a scene that could lie where a result goes: what was named, its geometry, and what a .gltf names. Of a scene that is
+/// not there any more none can be lost.
+pub(super) fn inputs(scene: &Path) -> Vec<PathBuf> {
+    let geometry = geometry_of(scene).unwrap_or_else(|_| scene.to_path_buf());
+    let mut inputs = vec![match scene.is_dir() {
         true => scene.join("scene.toml"),
         false => scene.to_path_buf(),
-    });
+    }];
     let is_text = geometry
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("gltf"));
-    let text = is_text.then(|| std::fs::read(geometry).ok()).flatten();
+    let text = is_text.then(|| std::fs::read(&geometry).ok()).flatten();
     let named = text.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
     let lists = ["images", "buffers"].map(|list| named.as_ref()?.get(list)?.as_array());
     let uris = lists.into_iter().flatten().flatten();
     let folder = geometry.parent().unwrap_or(Path::new(""));
     inputs.extend(uris.filter_map(|it| Some(folder.join(it.get("uri")?.as_str()?))));
+    inputs.push(geometry);
     inputs
 }
 

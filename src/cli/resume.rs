@@ -9,7 +9,7 @@ use super::results::{CHECKPOINT, SOLUTION, inputs, spare};
 use super::say;
 use super::session::Session;
 use super::solve::{How, engine_of, prepare, warn_of_another_engine};
-use crate::scene::NamedScene;
+use crate::scene::Scene;
 use crate::solution::Solution;
 use crate::{Run, Settings, Target};
 use clap::Args;
@@ -46,14 +46,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let watching = arguments.how.begin()?;
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     hold_less(solution.mesh.patches.len());
-    let scene = arguments.scene.as_deref().map(NamedScene::load_lit);
-    let scene = scene.transpose()?;
+    let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
-    let known = solution.report.scene_file.iter();
-    let mut files: Vec<PathBuf> = known.flat_map(|file| inputs(file, file)).collect();
-    if let (Some(file), Some(scene)) = (&arguments.scene, &scene) {
-        files.extend(inputs(file, &scene.names.file));
-    }
+    let scenes = solution.report.scene_file.iter().chain(&arguments.scene);
+    let files: Vec<PathBuf> = scenes.flat_map(|file| inputs(file)).collect();
     spare(&files, output, &arguments.how, &solution.cameras)?;
     let settings = settings(&solution, arguments)?;
     prepare(output)?;
@@ -61,7 +57,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let before = solution.report.clone();
     let mut run = Run::resume(solution, settings)?;
     let known_warnings = run.solution().report.warnings.len();
-    if let Some(NamedScene { scene, .. }) = scene {
+    if let Some(scene) = scene {
         say::warnings(&scene.warnings);
         run.relight(scene)?;
         let file = arguments.scene.as_deref();

@@ -57,7 +57,7 @@ pub(super) fn warnings(texts: &[String]) {
     if texts.len() > MOST {
         let more = texts.len() - MOST;
         warning(&format!(
-            "{more} more warnings; all of them are in the report"
+            "{more} more warnings; the report of a solve has all of them"
         ));
     }
 }

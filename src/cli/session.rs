@@ -68,34 +68,13 @@ impl Session<'_> {
     /// The same, before an audience. What it sees does not change what is computed.
     pub fn finish(&self, mut run: Run, audience: Option<&dyn Audience>) -> Result<Code, CliError> {
         run.reserve(self.pictures(run.solution()))?;
-        let look = self.how.look();
-        let mut bar = Watch::new(run.solution().report.options.tolerance, look);
-        if let Some(interval) = self.how.checkpoint {
-            let took = self.save(run.solution())?;
-            bar.due = Some(next(interval, took));
-        }
-        bar.seen = audience.map(|_| Instant::now());
-        while run.go(&mut bar)? == StopReason::Interrupted && !is_interrupted() {
-            if is_due(bar.seen) {
-                bar.seen = present(audience, run.solution());
-            }
-            if !is_due(bar.due) {
-                continue;
-            }
-            bar.due = self.how.checkpoint.map(|interval| {
-                // A solve is worth more than its checkpoint: what cannot be saved now may be saved later.
-                let took = self.save(run.solution()).unwrap_or_else(|error| {
-                    say::warning(&error.to_string());
-                    interval
-                });
-                next(interval, took)
-            });
-        }
-        bar.clear();
-        let is_left = run.set_aside().is_some();
-        if let Some(state) = run.set_aside() {
+        let mut watch = Watch::new(run.solution().report.options.tolerance, self.how.progress);
+        self.solve(&mut run, &mut watch, audience)?;
+        let set_aside = run.set_aside();
+        if let Some(state) = set_aside {
             self.save(state)?;
         }
+        let is_left = set_aside.is_some();
         let mut solution = run.finish();
         present(audience, &solution);
         self.warn(&solution);
@@ -107,18 +86,8 @@ impl Session<'_> {
             let _ = std::fs::remove_file(self.output.join(CHECKPOINT));
         }
         let place = (self.output, started);
-        write_beside(&mut solution, place, self.how, &bar.history)?;
-        let seconds = self.started.elapsed().as_secs_f64();
-        match look {
-            Look::Json => say::result(format!("{}\n", self.done(&solution)?))?,
-            _ if is_quiet() => {}
-            _ => {
-                say::result(summary(&solution, seconds))?;
-                if self.how.profile {
-                    say::result(profile(&solution.report))?;
-                }
-            }
-        }
+        write_beside(&mut solution, place, self.how, &watch.history)?;
+        self.say(&solution)?;
         // Also one that came while results were written, which they are now.
         Ok(match is_interrupted() {
             true => Code::Interrupted,
@@ -126,18 +95,58 @@ impl Session<'_> {
         })
     }
 
+    /// Goes on to the end, or until it is interrupted, and leaves the solve only for checkpoints and for the audience.
+    fn solve(
+        &self,
+        run: &mut Run,
+        watch: &mut Watch,
+        audience: Option<&dyn Audience>,
+    ) -> Result<(), CliError> {
+        if let Some(interval) = self.how.checkpoint {
+            let took = self.save(run.solution())?;
+            watch.due = Some(next(interval, took));
+        }
+        watch.seen = audience.map(|_| Instant::now());
+        while run.go(watch)? == StopReason::Interrupted && !is_interrupted() {
+            if is_due(watch.seen) {
+                watch.seen = present(audience, run.solution());
+            }
+            if !is_due(watch.due) {
+                continue;
+            }
+            watch.due = self.how.checkpoint.map(|interval| {
+                // A solve is worth more than its checkpoint: what cannot be saved now may be saved later.
+                let took = self.save(run.solution()).unwrap_or_else(|error| {
+                    say::warning(&error.to_string());
+                    interval
+                });
+                next(interval, took)
+            });
+        }
+        watch.clear();
+        Ok(())
+    }
+
+    /// Says what it came to, in the way that was asked for.
+    fn say(&self, solution: &Solution) -> Result<(), CliError> {
+        let seconds = self.started.elapsed().as_secs_f64();
+        if self.how.progress == Look::Json {
+            return say::result(format!("{}\n", done(solution, seconds)?));
+        }
+        if is_quiet() {
+            return Ok(());
+        }
+        say::result(summary(solution, seconds))?;
+        match self.how.profile {
+            true => say::result(profile(&solution.report)),
+            false => Ok(()),
+        }
+    }
+
     /// Memory for the largest of the pictures, bytes.
     fn pictures(&self, of: &Solution) -> u64 {
         let drawn = of.cameras.iter().filter(|_| !self.how.no_pictures);
         drawn.map(View::bytes_for).max().unwrap_or(0)
-    }
-
-    /// The end for a program.
-    fn done(&self, solution: &Solution) -> Result<serde_json::Value, CliError> {
-        let report = serde_json::to_value(&solution.report);
-        let report = report.map_err(|e| CliError::System(e.to_string()))?;
-        let seconds = self.started.elapsed().as_secs_f64();
-        Ok(serde_json::json!({ "event": "done", "seconds": seconds, "report": report }))
     }
 
     /// Writes the state; says how long that took.
@@ -153,6 +162,13 @@ impl Session<'_> {
         let known = self.known_warnings.min(report.warnings.len());
         say::warnings(&report.warnings[known..]);
     }
+}
+
+/// The end for a program.
+fn done(solution: &Solution, seconds: f64) -> Result<serde_json::Value, CliError> {
+    let report = serde_json::to_value(&solution.report);
+    let report = report.map_err(|e| CliError::System(e.to_string()))?;
+    Ok(serde_json::json!({ "event": "done", "seconds": seconds, "report": report }))
 }
 
 /// Shows what there is; says when to show more, if anybody is there.

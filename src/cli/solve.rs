@@ -3,7 +3,7 @@
 use super::CliError;
 use super::error::Code;
 use super::flags::SolveFlags;
-use super::memory::{load_with_file, peak_memory};
+use super::memory::{load_scene, peak_memory};
 use super::meshes::{Exporter, Formats};
 use super::pictures::draw;
 use super::progress::{Look, catch_interrupts, is_interrupted};
@@ -63,7 +63,7 @@ pub(super) struct How {
     pub no_html: bool,
     /// How progress is shown
     #[arg(long, value_enum, value_name = "LOOK", default_value = "auto")]
-    progress: Look,
+    pub progress: Look,
     /// Show the solution in a window while it converges (feature `viewer`); closing it lets the solve go on, Ctrl-C ends it
     #[arg(long)]
     watch: bool,
@@ -79,11 +79,6 @@ pub(super) struct How {
 }
 
 impl How {
-    /// How progress is shown.
-    pub(super) fn look(&self) -> Look {
-        self.progress
-    }
-
     /// Takes note of `--quiet`, and finds out whether there can be a window where one is asked for.
     pub(super) fn begin(&self) -> Result<Option<Watching>, CliError> {
         if self.quiet {
@@ -102,11 +97,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let file = arguments.scene.as_ref();
     let file = file.or(model.as_ref().and_then(|m| m.scene_file.as_ref()));
     let file = file.ok_or_else(|| CliError::Input("the report names no scene; name one".into()))?;
-    let (scene, geometry) = load_with_file(file)?;
+    let scene = load_scene(file)?;
     let load = started.elapsed().as_secs_f64();
     say::warnings(&scene.warnings);
-    let files = inputs(file, &geometry);
-    spare(&files, &arguments.output, &arguments.how, &scene.cameras)?;
+    let how = &arguments.how;
+    spare(&inputs(file), &arguments.output, how, &scene.cameras)?;
     prepare(&arguments.output)?;
     catch_interrupts();
     let (options, engine) = match &model {
@@ -116,8 +111,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let settings = Settings {
         options,
         target,
-        engine: arguments.how.engine.unwrap_or(engine),
-        threads: arguments.how.threads,
+        engine: how.engine.unwrap_or(engine),
+        threads: how.threads,
     };
     let known = scene.warnings.len();
     let mut run = Run::new(scene, settings)?;
@@ -129,7 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     }
     let session = Session {
         output: &arguments.output,
-        how: &arguments.how,
+        how,
         started,
         known_warnings: known,
     };

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 #[derive(Debug, Args)]
 pub(super) struct Viewpoint {
-    /// A camera of the scene by name; all of them if this is left out
+    /// A camera of the scene by name; if this is left out, `render` draws from all and `view` begins with the first
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
     /// Look from here instead (scene units)

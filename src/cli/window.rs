@@ -83,7 +83,7 @@ impl Watching {
         let viewer = Viewer::new(cameras, 0, first.extent());
         let engine = session.how.engine.unwrap_or_default();
         let (screen, failed) = (self.0.screen(), AtomicBool::new(false));
-        let silent = is_quiet() || session.how.look() == Look::Json;
+        let silent = is_quiet() || session.how.progress == Look::Json;
         let mut read = |reading: &Reading| {
             if !silent {
                 say::line(reading);

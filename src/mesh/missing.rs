@@ -20,8 +20,7 @@ impl Mesh {
             .zip(&scene.surfaces)
             .filter(|(_, surface)| among(surface));
         for (number, surface) in some {
-            let corners = surface.corners.indices().iter();
-            let corners: Vec<DVec3> = corners.map(|v| positions[*v as usize]).collect();
+            let corners: Vec<DVec3> = surface.corners.places(&positions).collect();
             let [all, _] = areas.entry(regions.first(number)).or_default();
             *all += vector_area(&corners).length();
         }

@@ -30,37 +30,39 @@ pub struct WriteError {
 /// Writes `path` through `fill`: into a temporary file of the same folder first, which takes the real name only when
 /// all of it has reached the disk. A reader never sees half a file, and an interrupted run keeps the previous one. Of a link it is the file
 /// behind it that is written, also if there is none yet; what is no file, a device or a pipe, is written to as it is. A file that takes the
-/// place of another has its permissions.
+/// place of another has its permissions. Gives what `fill` does.
 ///
 /// # Errors
 /// When the folder cannot be written to, the disk is full, `path` is a folder, or `fill` fails.
-pub fn write_atomically(
+pub fn write_atomically<T>(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> Result<(), WriteError> {
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>,
+) -> Result<T, WriteError> {
     fill_and_rename(path, fill).map_err(|reason| WriteError {
         path: path.to_path_buf(),
         reason,
     })
 }
 
-fn fill_and_rename(
+fn fill_and_rename<T>(
     path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> io::Result<()> {
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>,
+) -> io::Result<T> {
     if is_special(path) {
         let mut writer = BufWriter::new(OpenOptions::new().write(true).open(path)?);
-        fill(&mut writer)?;
-        return writer.flush();
+        let filled = fill(&mut writer)?;
+        writer.flush()?;
+        return Ok(filled);
     }
     let path = &followed(path)?;
     let (draft, file) = Draft::create(path)?;
     let mut writer = BufWriter::new(file);
-    fill(&mut writer)?;
+    let filled = fill(&mut writer)?;
     writer.flush()?;
     writer.get_ref().sync_all()?;
     // The file is closed only then: until it has its name, the lock says that somebody looks after it.
-    draft.publish(path)
+    draft.publish(path)?;
+    Ok(filled)
 }
 
 /// Where a path leads to, through links, whether there is a file or not.

@@ -61,12 +61,16 @@ fn joined<const N: usize, const M: usize, const ALL: usize>(parts: [[u8; N]; M])
     all
 }
 
+/// The lowest and the highest coordinates.
+pub(super) fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    })
+}
+
 /// Whether rounding to `f32` would move some position by more than 1e-5 of the extent of them all.
 pub(super) fn needs_double(positions: &[DVec3]) -> bool {
-    let (low, high) = positions.iter().fold(
-        (DVec3::INFINITY, DVec3::NEG_INFINITY),
-        |(low, high), &position| (low.min(position), high.max(position)),
-    );
+    let (low, high) = bounds(positions.iter().copied());
     let tolerance = 1e-5 * (high - low).max_element();
     positions.iter().any(|position| {
         (position.as_vec3().as_dvec3() - position)

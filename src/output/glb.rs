@@ -1,6 +1,6 @@
 //! The solution as a binary glTF 2.0 file: what Blender, browsers and game engines open.
 
-use super::blocks::{Block, floats, indices, needs_double, offsets};
+use super::blocks::{Block, bounds, floats, indices, needs_double, offsets};
 use super::{WriteError, write_atomically};
 use crate::scene::{Camera, Names};
 use crate::solution::{LitMesh, LitVertex};
@@ -121,12 +121,6 @@ impl<'a> Places<'a> {
             (place * self.metres).as_vec3()
         })
     }
-}
-
-fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    })
 }
 
 /// Triangles of one group of polygons.

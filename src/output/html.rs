@@ -6,6 +6,7 @@ use super::{WriteError, write_atomically};
 use crate::codec::base64;
 use crate::solution::{PowerReport, Report};
 use crate::words::{counted, rounded};
+use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
@@ -258,10 +259,10 @@ impl Page<'_> {
             (
                 "estimated error of the irradiance",
                 format!(
-                    "{:.2} % nRMS, of it {:+.2} % bias, at {} points",
+                    "{:.2} % nRMS, of it {:+.2} % bias, at {}",
                     100.0 * audit.n_rms,
                     100.0 * audit.bias,
-                    audit.points
+                    counted(audit.points, "point", "points")
                 ),
             ),
             (
@@ -286,9 +287,9 @@ impl Page<'_> {
                 "not reached"
             };
             let text = format!(
-                "{:.2} %, {reached} in {} solves",
+                "{:.2} %, {reached} in {}",
                 100.0 * target.n_rms,
-                target.rounds
+                counted(target.rounds, "solve", "solves")
             );
             rows.push(("error asked for", text));
         }
@@ -303,16 +304,12 @@ impl Page<'_> {
         let options = serde_json::to_value(&self.report.options).unwrap_or_default();
         let mut rows = String::new();
         for (name, value) in options.as_object().into_iter().flatten() {
-            let inner = value
-                .as_object()
-                .filter(|inner| !inner.contains_key("secs"));
-            match inner {
-                Some(inner) => {
-                    for (name, value) in inner {
-                        rows += &row(&[name, &plain(value)], &[1]);
-                    }
+            if let (Some(inner), None) = (value.as_object(), seconds(value)) {
+                for (name, value) in inner {
+                    rows += &row(&[name, &plain(value)], &[1]);
                 }
-                None => rows += &row(&[name, &plain(value)], &[1]),
+            } else {
+                rows += &row(&[name, &plain(value)], &[1]);
             }
         }
         format!("<h2>Options</h2>\n<table>\n{rows}</table>\n")
@@ -342,10 +339,19 @@ fn thinned(history: &[Moment]) -> Vec<&Moment> {
     kept
 }
 
-fn plain(value: &serde_json::Value) -> String {
+/// What a duration is in JSON.
+fn seconds(value: &Value) -> Option<f64> {
+    let (whole, nanos) = (value.get("secs")?.as_f64()?, value.get("nanos")?.as_f64()?);
+    Some(whole + 1e-9 * nanos)
+}
+
+fn plain(value: &Value) -> String {
+    if let Some(seconds) = seconds(value) {
+        return format!("{seconds} s");
+    }
     match value {
-        serde_json::Value::Null => "none".into(),
-        serde_json::Value::String(text) => text.clone(),
+        Value::Null => "none".into(),
+        Value::String(text) => text.clone(),
         other => other.to_string(),
     }
 }

@@ -1,7 +1,7 @@
 //! Results as files, one writer a format, and the summary table as text.
 //!
 //! Every file appears whole or not at all ([`write_atomically`]), and every failure names the file and the reason
-//! ([`WriteError`]). Imports `solution` and `matrix`: pictures come in as plain rows of pixels.
+//! ([`WriteError`]). Imports `codec`, `radiometry`, `scene`, `matrix`, `solution` and `words`: pictures come in as plain rows of pixels.
 
 mod atomic;
 mod blocks;

@@ -1,4 +1,6 @@
 //! From a scene to its solution: mesh, visibility, solve, report. [`solve`] does it in one call, a [`Run`] in as many as one likes.
+//!
+//! Imports `radiometry`, `scene`, `threads`, `visibility`, `mesh`, `solver`, `solution` and `words`.
 
 mod measure;
 mod report;

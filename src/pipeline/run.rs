@@ -49,15 +49,7 @@ impl Run {
         let time_limit = options.time_limit;
         let mut report = blank(&scene, &mesh, visibility.as_ref(), options, threads);
         report.target = target;
-        let mut run = Self {
-            solution: None,
-            complete: None,
-            visibility,
-            pool,
-            time_limit,
-            spent: Duration::ZERO,
-            reserved: 0,
-        };
+        let mut run = Self::idle(visibility, pool, time_limit);
         run.begin(scene, mesh, report);
         let seconds = &mut run.report_mut().seconds;
         seconds.engine = engine;
@@ -109,13 +101,25 @@ impl Run {
         report.seconds.build += started.elapsed().as_secs_f64();
         Ok(Self {
             solution: Some(solution),
+            ..Self::idle(visibility, pool, time_limit)
+        })
+    }
+
+    /// Has nothing to solve yet.
+    fn idle(
+        visibility: Box<dyn Visibility>,
+        pool: ThreadPool,
+        time_limit: Option<Duration>,
+    ) -> Self {
+        Self {
+            solution: None,
             complete: None,
             visibility,
             pool,
             time_limit,
             spent: Duration::ZERO,
             reserved: 0,
-        })
+        }
     }
 
     /// Keeps so many bytes of the memory limit for pictures.
@@ -275,7 +279,7 @@ impl Run {
 
     /// Begins anew with the options of the next round.
     fn next_round(&mut self) -> Result<(), SolveError> {
-        let complete = self.solution.take().expect(KEPT);
+        let complete = self.solution();
         let scene = complete.continuation.as_ref().expect(KEPT).scene.clone();
         let mut report = complete.report.clone();
         if let Some(target) = &report.target {
@@ -283,8 +287,8 @@ impl Run {
         }
         let limits = report.options.limits;
         let mesh = self.pool.install(|| Mesh::new(&scene, limits));
+        self.complete = self.solution.take();
         self.begin(scene, mesh, report);
-        self.complete = Some(complete);
         Ok(())
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! A side that does not radiate is see-through: a room can be looked at from outside through the back of its walls.
 //! All pixels are computed in parallel and none depends on another, so a picture is the same for any number of
-//! threads. Imports `radiometry`, `solution`, `scene` and the trait of `visibility`.
+//! threads. Imports `geometry`, `radiometry`, `solution`, `scene` and the trait of `visibility`.
 
 mod cells;
 mod digits;

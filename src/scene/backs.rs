@@ -66,8 +66,7 @@ impl Outline<'_> {
 
     fn area_vector(&self, positions: &[DVec3]) -> DVec3 {
         let of = |surface: &Surface| {
-            let corners = surface.corners.indices().iter();
-            let corners: Vec<DVec3> = corners.map(|v| positions[*v as usize]).collect();
+            let corners: Vec<DVec3> = surface.corners.places(positions).collect();
             vector_area(&corners)
         };
         self.surfaces.iter().map(of).sum()

@@ -45,6 +45,19 @@ impl NamedScene {
     }
 }
 
+/// The file with the geometry of the scene at `path`, as far as that can be told without reading it.
+pub(crate) fn geometry_of(path: &Path) -> Result<PathBuf, SceneError> {
+    let toml = match path.is_dir() {
+        true => path.join(SCENE_FILE),
+        false => path.to_path_buf(),
+    };
+    if !has_extension(&toml, "toml") {
+        return Ok(toml);
+    }
+    let file = TextFile::read(&toml, "a scene's .toml file")?;
+    Ok(geometry_path(&file, &settings::read(&file)?)?.0)
+}
+
 /// Reads a scene in which `auto` sides come to `auto`.
 fn load(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
     if path.is_dir() {

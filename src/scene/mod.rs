@@ -94,6 +94,7 @@ mod weld;
 pub(crate) use backs::back_to_back;
 pub(crate) use compare::check_unit;
 pub use error::SceneError;
+pub(crate) use load::geometry_of;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};
 
@@ -152,6 +153,11 @@ impl Corners {
             Corners::Triangle(t) => t,
             Corners::Quad(q) => q,
         }
+    }
+
+    /// Where they are, if vertices lie at these positions.
+    pub fn places<'a>(&'a self, positions: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
+        self.indices().iter().map(|v| positions[*v as usize])
     }
 
     /// As triangles with the same front: one, or the two that the diagonal from the first corner leaves.

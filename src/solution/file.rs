@@ -150,19 +150,14 @@ impl Solution {
             return Err("not a solution file".into());
         }
         let (header, payload) = bytes.split_at(HEADER);
-        let u32_at = |at: usize| {
-            header[at..at + 4]
-                .iter()
-                .rev()
-                .fold(0u32, |n, b| n << 8 | u32::from(*b))
-        };
+        let u32_at = |at: usize| u32::from_le_bytes(std::array::from_fn(|i| header[at + i]));
         let (version, checksum) = (u32_at(8), u32_at(20));
         if !(1..=VERSION).contains(&version) {
             return Err(format!(
                 "format version {version}, where this program reads 1 to {VERSION}"
             ));
         }
-        let length = u64::from(u32_at(12)) | u64::from(u32_at(16)) << 32;
+        let length = u64::from_le_bytes(std::array::from_fn(|i| header[12 + i]));
         if payload.len() as u64 != length {
             return Err(format!(
                 "{} bytes of {length}: the file is cut short or has grown",

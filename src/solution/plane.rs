@@ -40,15 +40,15 @@ impl Plane {
             rows: 0,
         };
         let cells = |axis: usize| ((high - low)[axis] / spacing).round().max(1.0) as usize;
-        let (column, row) = plane.sides();
+        let (column, row) = Self::sides(axis);
         plane.columns = cells(column);
         plane.rows = cells(row);
         plane
     }
 
-    /// The axes of columns and rows.
-    fn sides(&self) -> (usize, usize) {
-        match self.axis {
+    /// The axes that columns and rows follow on a plane across an axis.
+    pub fn sides(axis: usize) -> (usize, usize) {
+        match axis {
             0 => (2, 1),
             1 => (0, 2),
             _ => (0, 1),
@@ -63,7 +63,7 @@ impl Plane {
 
     /// The points, row after row; rows in the order of their coordinate.
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        let (column, row) = self.sides();
+        let (column, row) = Self::sides(self.axis);
         let size = self.high - self.low;
         let middle = move |axis: usize, number: usize, count: usize| {
             self.low[axis] + size[axis] * (number as f64 + 0.5) / count as f64

@@ -61,7 +61,7 @@ pub struct Report {
     /// solution.
     #[serde(default)]
     pub resumed_with: Vec<String>,
-    /// What was suspicious in the input.
+    /// What was suspicious in the input, could not be meshed as it should, or ended the solve early; and where much of the light was lost.
     pub warnings: Vec<String>,
 }
 

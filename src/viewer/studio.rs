@@ -134,10 +134,14 @@ impl Artist<'_> {
             let eye = order.look.camera.eye;
             if place.as_ref().is_none_or(|place| place.eye() != eye) {
                 let engine = |triangles| build(self.shared.engine, &triangles, 0);
-                match Place::new(&exhibit.lit, eye, engine) {
-                    Ok(made) => place = Some(made),
-                    Err(error) => (self.deliver)(Err(error)),
-                }
+                // Of an engine that fails no place remains: the one before is elsewhere.
+                place = match Place::new(&exhibit.lit, eye, engine) {
+                    Ok(made) => Some(made),
+                    Err(error) => {
+                        (self.deliver)(Err(error));
+                        None
+                    }
+                };
             }
             if let Some(place) = &place {
                 self.draw(number, &order, place);

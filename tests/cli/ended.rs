@@ -1,6 +1,6 @@
 //! What ends a solve before it has converged, and how that is said.
 
-use super::{Run, folder, radiosity, scene, text};
+use super::{Run, folder, radiosity, report, scene, solve, text};
 use std::fs;
 use std::path::Path;
 
@@ -17,8 +17,7 @@ fn reported(command: &str, of: &Path, output: &Path, more: &[&str]) -> (Run, ser
     let begin = [command, text(of), "-o", text(output), "--no-pictures"];
     let run = radiosity(&[&begin[..], &["--formats", "none"], more].concat());
     run.assert_success();
-    let json = fs::read(output.join("report.json")).expect("was written");
-    (run, serde_json::from_slice(&json).expect("is JSON"))
+    (run, report(output))
 }
 
 #[test]
@@ -98,15 +97,8 @@ fn a_report_that_does_not_give_its_solve_again_says_so() {
     assert_eq!(report["resumed_with"], serde_json::json!([with]));
     let repeated = |of: &Path| {
         let from = of.join("report.json");
-        let run = [
-            "solve",
-            "--from",
-            text(&from),
-            "-o",
-            text(&third),
-            "--no-pictures",
-        ];
-        let run = radiosity(&run);
+        let solve = ["solve", "--from", text(&from), "-o", text(&third)];
+        let run = radiosity(&[&solve[..], &["--no-pictures"]].concat());
         run.assert_success();
         run.err
     };
@@ -129,20 +121,15 @@ fn the_memory_limit_holds_for_the_largest_picture_too() {
     );
     fs::write(folder.path().join("scene.toml"), toml).expect("can be written");
     let output = folder.path().join("out");
-    let limited = [
-        "solve",
-        text(folder.path()),
-        "-o",
-        text(&output),
-        "--memory-limit",
-        "100MB",
-    ];
-    let run = radiosity(&limited);
+    let limited = |flags: &str| {
+        let flags = format!("--memory-limit 100MB {flags}");
+        solve(folder.path(), &output, &flags)
+    };
     let words = [
         "a picture of 24.7 GB",
         "100 MB may be used",
         "--memory-limit",
     ];
-    run.assert_refused(1, &words);
-    radiosity(&[&limited[..], &["--no-pictures"]].concat()).assert_success();
+    limited("").assert_refused(1, &words);
+    limited("--no-pictures").assert_success();
 }

@@ -1,6 +1,6 @@
 //! `radiosity probe --grid`.
 
-use super::{draft, folder, names, radiosity, text};
+use super::{draft, folder, names, radiosity, solve, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -21,16 +21,8 @@ fn room(folder: &TempDir) -> PathBuf {
 
 fn solved(scene: &Path, folder: &TempDir) -> PathBuf {
     let output = folder.path().join("solved");
-    let solve = [
-        "solve",
-        text(scene),
-        "-o",
-        text(&output),
-        "--preset",
-        "draft",
-    ];
-    let quick = ["--no-pictures", "--formats", "none"];
-    radiosity(&[&solve[..], &quick].concat()).assert_success();
+    let quick = "--preset draft --no-pictures --formats none";
+    solve(scene, &output, quick).assert_success();
     output
 }
 
@@ -130,8 +122,7 @@ fn points_outside_of_the_room_are_left_out() {
     let materials = "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 9 9 9\n";
     fs::write(folder.path().join("it.mtl"), materials).expect("can be written");
     let output = folder.path().join("out");
-    let solve = ["solve", text(&path), "-o", text(&output), "--no-pictures"];
-    radiosity(&[&solve[..], &["--preset", "draft"]].concat()).assert_success();
+    solve(&path, &output, "--no-pictures --preset draft").assert_success();
     for grid in ["y=1", "-y=1"] {
         let run = radiosity(&["probe", text(&output), "--grid", grid, "--spacing", "0.25"]);
         run.assert_success();

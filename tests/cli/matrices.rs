@@ -1,9 +1,11 @@
 //! `radiosity form-factors`.
 
-use super::{folder, names, radiosity, scene, text};
+use super::{finished, folder, names, radiosity, scene, start, text, wait_until};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// A closed unit cube of six named faces, radiating inwards.
@@ -270,27 +272,21 @@ fn more_than_all_is_not_called_open() {
 fn an_interrupted_run_leaves_nothing_behind() {
     let folder = folder();
     let output = folder.path().join("F.csv");
+    let box_ = scene("cornell-box");
     // Minutes of work.
-    let mut child = super::command()
-        .args(["form-factors", text(&scene("cornell-box")), "-o"])
-        .args([text(&output), "--max-area", "2e-4"])
-        .stderr(std::process::Stdio::null())
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .expect("can be started");
-    let started = std::time::Instant::now();
+    let matrix = ["form-factors", text(&box_), "-o", text(&output)];
+    let child = start(&[&matrix[..], &["--max-area", "2e-4"]].concat());
     let is_writing = || !names(folder.path()).is_empty();
     // That the folder can be written to is tried first, so it must last.
-    while !(is_writing() && is_writing()) && started.elapsed().as_secs() < 60 {
-        std::thread::sleep(std::time::Duration::from_millis(200));
-    }
+    wait_until(|| {
+        let begun = is_writing();
+        sleep(Duration::from_millis(200));
+        begun && is_writing()
+    });
     assert!(names(folder.path())[0].ends_with(".part"));
-    let kill = std::process::Command::new("sh")
-        .args(["-c", &format!("kill -INT {}", child.id())])
-        .status();
-    assert!(kill.expect("can be started").success());
-    let code = child.wait().expect("ends").code();
-    assert_eq!(code, Some(130));
+    super::send("INT", &child);
+    let run = finished(child);
+    assert_eq!(run.code, Some(130), "{}", run.err);
     assert!(
         names(folder.path()).is_empty(),
         "{:?}",

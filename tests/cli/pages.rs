@@ -1,15 +1,13 @@
 //! `report.html`.
 
-use super::{folder, names, radiosity, scene, text};
+use super::{folder, names, scene, solve};
 use roxmltree::{Document, ParsingOptions};
 use std::fs;
 
 /// The page of a solve with those flags, once it has proved well-formed and free of anything to fetch or run.
-fn page(flags: &[&str]) -> String {
+fn page(flags: &str) -> String {
     let folder = folder();
-    let scene = scene("cornell-box");
-    let solve = ["solve", text(&scene), "-o", text(folder.path())];
-    radiosity(&[&solve[..], flags].concat()).assert_success();
+    solve(&scene("cornell-box"), folder.path(), flags).assert_success();
     let html = fs::read_to_string(folder.path().join("report.html")).expect("was written");
     let options = ParsingOptions {
         allow_dtd: true,
@@ -34,7 +32,7 @@ fn page(flags: &[&str]) -> String {
 
 #[test]
 fn the_report_is_one_page_with_everything_in_it() {
-    let html = page(&["--preset", "draft"]);
+    let html = page("--preset draft");
     for words in [
         "<title>Cornell box: radiosity</title>",
         "converged",
@@ -89,15 +87,7 @@ fn estimates(html: &str) -> (usize, usize) {
 #[test]
 fn every_round_on_the_way_to_an_error_has_its_estimate_in_the_plot() {
     // The first round falls a little short of it.
-    let html = page(&[
-        "--target-error",
-        "2%",
-        "--max-elements",
-        "150",
-        "--no-pictures",
-        "--formats",
-        "none",
-    ]);
+    let html = page("--target-error 2% --max-elements 150 --no-pictures --formats none");
     let rounds = html.split("reached in ").nth(1);
     let rounds = rounds.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
     let rounds = rounds.expect("says how many solves it took");
@@ -128,9 +118,15 @@ fn every_round_on_the_way_to_an_error_has_its_estimate_in_the_plot() {
 }
 
 #[test]
+fn durations_and_counts_read_as_text() {
+    let html = page("--target-error 20% --time-limit 1.5h --no-pictures --formats none");
+    assert!(html.contains(">5400 s<"), "{html}");
+    assert!(html.contains(", reached in 1 solve<"), "{html}");
+}
+
+#[test]
 fn without_pictures_the_page_has_none() {
-    let short = ["--preset", "draft", "--max-shots", "2"];
-    let html = page(&[&short[..], &["--no-pictures", "--formats", "none"]].concat());
+    let html = page("--preset draft --max-shots 2 --no-pictures --formats none");
     assert!(!html.contains("<img") && !html.contains("solution.ply"));
     assert!(html.contains("max-shots"));
 }
@@ -144,13 +140,12 @@ fn names_are_text_and_warnings_are_counted() {
     let scene = folder.path().join("a.toml");
     fs::write(&scene, toml).expect("can be written");
     let output = folder.path().join("out");
-    let solve = ["solve", text(&scene), "-o", text(&output), "--no-pictures"];
-    radiosity(&solve).assert_success();
+    solve(&scene, &output, "--no-pictures").assert_success();
     let html = fs::read_to_string(output.join("report.html")).expect("was written");
     assert!(html.contains("<h1>&lt;b&gt;&amp;&quot;</h1>"), "{html}");
     assert!(html.contains("<h2>Warnings (3)</h2>"), "{html}");
-    let without = [&solve[..], &["--no-html", "--formats", "none"]].concat();
     fs::remove_dir_all(&output).expect("is there");
-    radiosity(&without).assert_success();
+    let without = "--no-pictures --no-html --formats none";
+    solve(&scene, &output, without).assert_success();
     assert_eq!(names(&output), ["report.json", "solution.rad"]);
 }

@@ -1,6 +1,6 @@
 //! What cannot be solved, and how that is said.
 
-use super::{folder, names, radiosity, scene, text};
+use super::{folder, names, radiosity, scene, solve, text};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -28,13 +28,7 @@ fn a_scene_whose_geometry_is_missing_names_the_file() {
         "geometry = \"gone.obj\"\n",
     )
     .expect("can be written");
-    let run = radiosity(&[
-        "solve",
-        text(folder.path()),
-        "-o",
-        text(&folder.path().join("out")),
-    ]);
-    run.assert_refused(3, &["gone.obj"]);
+    solve(folder.path(), &folder.path().join("out"), "").assert_refused(3, &["gone.obj"]);
 }
 
 #[test]
@@ -42,8 +36,7 @@ fn a_scene_without_surfaces_is_bad_input() {
     let folder = folder();
     let path = folder.path().join("empty.obj");
     fs::write(&path, "v 0 0 0\nv 1 0 0\n").expect("can be written");
-    radiosity(&["solve", text(&path), "-o", text(&folder.path().join("out"))])
-        .assert_refused(3, &["empty.obj"]);
+    solve(&path, &folder.path().join("out"), "").assert_refused(3, &["empty.obj"]);
 }
 
 #[test]
@@ -53,14 +46,7 @@ fn an_output_that_cannot_be_written_is_found_out_before_the_solve() {
     fs::write(&file, "in the way").expect("can be written");
     let started = Instant::now();
     for output in [file.clone(), file.join("out")] {
-        let run = radiosity(&[
-            "solve",
-            text(&scene("cornell-box")),
-            "-o",
-            text(&output),
-            "--preset",
-            "accurate",
-        ]);
+        let run = solve(&scene("cornell-box"), &output, "--preset accurate");
         run.assert_refused(1, &["cannot write to", text(&file)]);
     }
     assert!(
@@ -77,14 +63,7 @@ fn an_output_that_cannot_be_written_is_found_out_before_the_solve() {
 #[cfg(not(embree))]
 fn embree_is_refused_with_advice_where_it_was_not_built() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&scene("geometry")),
-        "-o",
-        text(folder.path()),
-        "--engine",
-        "embree",
-    ]);
+    let run = solve(&scene("geometry"), folder.path(), "--engine embree");
     run.assert_refused(1, &["built without Embree", "obvhs"]);
 }
 
@@ -92,22 +71,8 @@ fn embree_is_refused_with_advice_where_it_was_not_built() {
 #[cfg(embree)]
 fn embree_solves_where_it_was_built() {
     let folder = folder();
-    let arguments = [
-        "--engine",
-        "embree",
-        "--preset",
-        "draft",
-        "--no-pictures",
-        "--max-shots",
-        "1",
-    ];
-    let run = radiosity(
-        &[
-            &["solve", text(&scene("geometry")), "-o", text(folder.path())],
-            &arguments[..],
-        ]
-        .concat(),
-    );
+    let flags = "--engine embree --preset draft --no-pictures --max-shots 1";
+    let run = solve(&scene("geometry"), folder.path(), flags);
     run.assert_success();
     assert!(run.out.contains("by embree"), "{}", run.out);
 }
@@ -117,29 +82,28 @@ fn wrong_usage_ends_with_2() {
     let folder = folder();
     let output = text(folder.path());
     let geometry = scene("geometry");
-    let solve = ["solve", text(&geometry), "-o", output];
     for flags in [
-        &["--engine", "magic"][..],
-        &["--preset", "best"],
-        &["--preset", "draft", "--target-error", "1%"],
-        &["--target-error", "1"],
-        &["--audit-points", "0", "--target-error", "1%"],
-        &["--eps-v", "2"],
-        &["--eps-d=-1"],
-        &["--eps-d", "nan"],
-        &["--local-share", "1.5"],
-        &["--max-depth", "18"],
-        &["--tolerance", "inf"],
-        &["--time-limit", "0"],
-        &["--threads=-1"],
-        &["--threads", "100000"],
-        &["--audit-points", "1000001"],
-        &["--unknown"],
+        "--engine magic",
+        "--preset best",
+        "--preset draft --target-error 1%",
+        "--target-error 1",
+        "--audit-points 0 --target-error 1%",
+        "--eps-v 2",
+        "--eps-d=-1",
+        "--eps-d nan",
+        "--local-share 1.5",
+        "--max-depth 18",
+        "--tolerance inf",
+        "--time-limit 0",
+        "--threads=-1",
+        "--threads 100000",
+        "--audit-points 1000001",
+        "--unknown",
     ] {
-        let run = radiosity(&[&solve[..], flags].concat());
-        assert_eq!(run.code, Some(2), "{flags:?}: {}", run.err);
-        let name = flags[0].trim_end_matches("=-1");
-        assert!(run.err.contains(name), "{flags:?}: {}", run.err);
+        let run = solve(&geometry, folder.path(), flags);
+        assert_eq!(run.code, Some(2), "{flags}: {}", run.err);
+        let name = flags.split([' ', '=']).next().unwrap_or_default();
+        assert!(run.err.contains(name), "{flags}: {}", run.err);
     }
     let eaten = radiosity(&["solve", "--checkpoint", text(&geometry), "-o", output]);
     assert_eq!(eaten.code, Some(2), "{}", eaten.err);
@@ -168,21 +132,21 @@ fn a_result_never_replaces_a_file_of_the_scene() {
     let before = names(&lit);
     let by_another_way = folder.path().join("lit/../lit");
     for scene in [&lit, &lit.join("solution.obj")] {
-        let solve = ["solve", text(scene), "-o", text(&by_another_way)];
-        let run = radiosity(&[&solve[..], &["--formats", "glb,obj"]].concat());
+        let run = solve(scene, &by_another_way, "--formats glb,obj");
         run.assert_refused(2, &["solution.obj", "belongs to the scene", "-o"]);
         let kept = fs::read_to_string(lit.join("solution.obj")).expect("is still there");
         assert_eq!((kept, names(&lit)), (obj.clone(), before.clone()));
     }
-    let other = ["solve", text(&lit), "-o", text(&lit), "--no-pictures"];
-    radiosity(&other).assert_success();
+    solve(&lit, &lit, "--no-pictures").assert_success();
 
-    // Nor when a solve of it goes on elsewhere.
-    let ply = lit.join("solution.ply");
+    // Nor when a solve of it goes on elsewhere, whether its geometry was named or its folder.
     let first = folder.path().join("first");
-    let solve = ["solve", text(&ply), "-o", text(&first), "--no-pictures"];
-    radiosity(&solve).assert_success();
-    radiosity(&["resume", text(&first), "-o", text(&lit)]).assert_refused(2, &["solution.ply"]);
+    for (scene, format) in [(lit.join("solution.ply"), "ply"), (lit.clone(), "obj")] {
+        solve(&scene, &first, "--no-pictures").assert_success();
+        let resume = ["resume", text(&first), "-o", text(&lit)];
+        let lost = format!("solution.{format}");
+        radiosity(&[&resume[..], &["--formats", format]].concat()).assert_refused(2, &[&lost]);
+    }
 }
 
 #[test]
@@ -201,9 +165,9 @@ fn a_picture_never_replaces_a_texture() {
         "images":[{"uri":"mesh.png"}],"textures":[{"source":0}]}"#;
     let scene = folder.path().join("mesh.gltf");
     fs::write(&scene, gltf.replace("CORNERS", corners)).expect("can be written");
-    let solve = ["solve", text(&scene), "-o", text(folder.path())];
-    radiosity(&solve).assert_refused(2, &["mesh.png", "belongs to the scene"]);
-    radiosity(&[&solve[..], &["--no-pictures"]].concat()).assert_success();
+    let run = solve(&scene, folder.path(), "");
+    run.assert_refused(2, &["mesh.png", "belongs to the scene"]);
+    solve(&scene, folder.path(), "--no-pictures").assert_success();
     assert_eq!(fs::read(&texture).expect("is still there"), png);
 }
 
@@ -211,10 +175,8 @@ fn a_picture_never_replaces_a_texture() {
 fn the_report_is_there_when_a_picture_cannot_be_written() {
     let folder = folder();
     fs::create_dir(folder.path().join("shaded.exr")).expect("can be made");
-    let geometry = scene("geometry");
-    let solve = ["solve", text(&geometry), "-o", text(folder.path())];
-    let more = ["--max-shots", "1", "--formats", "none"];
-    radiosity(&[&solve[..], &more].concat()).assert_refused(1, &["shaded.exr"]);
+    let flags = "--max-shots 1 --formats none";
+    solve(&scene("geometry"), folder.path(), flags).assert_refused(1, &["shaded.exr"]);
     let kept = ["report.json", "shaded.exr", "solution.rad"];
     assert_eq!(names(folder.path()), kept);
 }

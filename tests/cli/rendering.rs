@@ -1,6 +1,6 @@
 //! `radiosity render`.
 
-use super::{draft, names, radiosity, text};
+use super::{PICTURES, draft, folder, names, radiosity, solve, text, two_cameras};
 use std::path::Path;
 
 /// Width and height of a PNG file.
@@ -9,8 +9,6 @@ fn size(path: &Path) -> (u32, u32) {
     let reader = png::Decoder::new(file).read_info().expect("is a PNG file");
     (reader.info().width, reader.info().height)
 }
-
-const PICTURES: [&str; 4] = ["mesh.png", "shaded.exr", "shaded.png", "wireframe.png"];
 
 #[test]
 fn a_solution_is_drawn_from_elsewhere() {
@@ -59,6 +57,25 @@ fn the_scene_s_own_camera_draws_beside_the_solution() {
 }
 
 #[test]
+fn another_camera_leaves_the_pictures_of_the_first_alone() {
+    let folder = folder();
+    let scene = two_cameras(&folder, 16);
+    let output = folder.path().join("solved");
+    solve(&scene, &output, "--formats none").assert_success();
+    let drawn = |flags: &[&str]| {
+        let render = ["render", text(&output), "--camera", "second"];
+        radiosity(&[&render[..], flags].concat()).assert_success();
+    };
+    drawn(&["--width", "24"]);
+    assert_eq!(size(&output.join("shaded.png")), (16, 16));
+    assert_eq!(size(&output.join("second/shaded.png")), (24, 16));
+    // In a folder of its own it is the first.
+    let elsewhere = folder.path().join("elsewhere");
+    drawn(&["-o", text(&elsewhere)]);
+    assert_eq!(names(&elsewhere), PICTURES);
+}
+
+#[test]
 fn a_plan_is_drawn_with_another_way_up() {
     let (folder, solved) = draft("geometry");
     let output = folder.path().join("plan");
@@ -98,7 +115,7 @@ fn a_window_needs_a_display_or_the_program_that_has_one() {
         true => "no window can be opened",
         false => "--features viewer",
     };
-    let folder = super::folder();
+    let folder = folder();
     let output = folder.path().join("out");
     let scene = super::scene("cornell-box");
     let solve = ["solve", text(&scene), "-o", text(&output), "--watch"];

@@ -1,10 +1,11 @@
 //! Checkpoints, `resume`, `--from` and limits.
 
-use super::{Run, command, draft, folder, names, radiosity, scene, text};
-use radiosity::solution::{Seconds, Solution};
+use super::{
+    RESULTS, Run, command, common, draft, folder, names, radiosity, report, scene, solution, solve,
+    text,
+};
 use radiosity::solver::{Preset, StopReason};
 use std::fs;
-use std::io::Cursor;
 use std::path::Path;
 use std::process::Stdio;
 use std::thread::sleep;
@@ -18,14 +19,7 @@ fn run(arguments: &[&[&str]]) -> Run {
 
 /// The solution in a folder, without what may differ from run to run.
 fn bits(folder: &Path) -> Vec<u8> {
-    let path = folder.join("solution.rad");
-    let mut solution = Solution::read(&path).unwrap_or_else(|error| panic!("{error}"));
-    solution.report.seconds = Seconds::default();
-    let mut bytes = Cursor::new(Vec::new());
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    bytes.into_inner()
+    common::sessions::bits(solution(folder))
 }
 
 /// Starts a command and kills it after a while, if it has not ended by then. No signal that could be caught.
@@ -74,15 +68,7 @@ fn killed_at_any_moment_a_solve_resumes_to_the_same_bits() {
     assert!(bits(&pieces) == bits(&whole), "after {kills} kills");
     // What the kills have left half-written is cleared away by whoever comes next.
     run(&[&solve, &[text(&pieces)], &DRAFT]).assert_success();
-    let expected = [
-        "report.html",
-        "report.json",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-    ];
-    assert_eq!(names(&pieces), expected);
+    assert_eq!(names(&pieces), RESULTS);
 }
 
 #[test]
@@ -107,24 +93,30 @@ fn a_report_repeats_its_solve_from_anywhere() {
         .args([&solve[..], &options, &engine].concat())
         .output();
     Run::from(solved.expect("can be started")).assert_success();
-    let report = first.join("report.json");
-    let from = ["solve", "--from", text(&report), "--no-pictures", "-o"];
+    let first_report = first.join("report.json");
+    let from = [
+        "solve",
+        "--from",
+        text(&first_report),
+        "--no-pictures",
+        "-o",
+    ];
     run(&[&from, &[text(&second)]]).assert_success();
     assert!(bits(&second) == bits(&first));
     let more = run(&[&from, &[text(&third), "--max-shots", "21"]]);
     more.assert_success();
     assert!(bits(&third) != bits(&first), "flags have the last word");
 
-    fs::write(&report, "{}").expect("can be written");
+    fs::write(&first_report, "{}").expect("can be written");
     run(&[&from, &[text(&second)]]).assert_refused(3, &["report.json", "missing field"]);
-    fs::remove_file(&report).expect("is there");
+    fs::remove_file(&first_report).expect("is there");
     run(&[&from, &[text(&second)]]).assert_refused(3, &["cannot read", "report.json"]);
 }
 
 #[test]
 fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
     let (folder, solved) = draft("cornell-box");
-    let before = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let before = solution(&solved);
     let resumed = run(&[&[
         "resume",
         text(&solved),
@@ -133,7 +125,7 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
         "--no-pictures",
     ]]);
     resumed.assert_success();
-    let after = Solution::read(&solved.join("solution.rad")).expect("was written");
+    let after = solution(&solved);
     assert!(after.report.shots > before.report.shots);
     assert!(after.report.power.unshot.abs() < before.report.power.unshot.abs() + 1e-3);
     assert_eq!(
@@ -168,7 +160,7 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
         text(&output),
     ];
     run(&[&arguments, &["--no-pictures"]]).assert_success();
-    let relit = Solution::read(&output.join("solution.rad")).expect("was written");
+    let relit = solution(&output);
     let ratio = relit.report.power.absorbed / after.report.power.absorbed;
     assert!((ratio - 0.5).abs() < 0.005, "{ratio}");
 
@@ -180,14 +172,13 @@ fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
 #[test]
 fn a_preset_takes_the_place_of_a_target_and_of_a_solves_own_options() {
     let folder = folder();
-    let (output, geometry) = (text(folder.path()), scene("geometry"));
-    let solve = ["solve", text(&geometry), "-o", output, "--no-pictures"];
-    run(&[&solve, &["--target-error", "20%"]]).assert_success();
+    let flags = "--no-pictures --target-error 20%";
+    solve(&scene("geometry"), folder.path(), flags).assert_success();
     let resumed = |flags: &[&str]| {
+        let output = text(folder.path());
         let resume = ["resume", output, "--no-pictures", "--formats", "none"];
         run(&[&resume, flags]).assert_success();
-        let solution = Solution::read(&folder.path().join("solution.rad"));
-        solution.expect("was written").report
+        solution(folder.path()).report
     };
     assert!(resumed(&[]).target.is_some(), "goes on as it was");
     let report = resumed(&["--preset", "draft"]);
@@ -212,16 +203,14 @@ fn a_solution_that_was_written_stands_even_if_its_meshes_cannot_be() {
     let folder = folder();
     let output = folder.path().join("out");
     fs::create_dir_all(output.join("solution.glb")).expect("can be made");
-    let geometry = scene("geometry");
-    let solve = ["solve", text(&geometry), "-o", text(&output)];
-    let more = ["--checkpoint", "1h", "--formats", "glb"];
-    run(&[&solve, &DRAFT, &more]).assert_refused(1, &["solution.glb"]);
+    let flags = "--preset draft --no-pictures --checkpoint 1h --formats glb";
+    solve(&scene("geometry"), &output, flags).assert_refused(1, &["solution.glb"]);
     // Without a checkpoint, from which `resume` would begin anew.
     assert_eq!(
         names(&output),
         ["report.json", "solution.glb", "solution.rad"]
     );
-    let solved = Solution::read(&output.join("solution.rad")).expect("was written");
+    let solved = solution(&output);
     assert_eq!(solved.report.stop_reason, StopReason::Converged);
 }
 
@@ -248,33 +237,27 @@ fn what_cannot_be_resumed_is_refused() {
 fn limits_end_the_refinement_and_say_so() {
     let folder = folder();
     let cornell = scene("cornell-box");
-    let limited = |limit: &[&str]| {
-        let output = folder.path().join(limit[0].trim_start_matches('-'));
-        let arguments = [
-            "solve",
-            text(&cornell),
-            "-o",
-            text(&output),
-            "--no-pictures",
-        ];
-        let options = ["--engine", "obvhs", "--tolerance", "0.05"];
-        let run = run(&[&arguments, &options, limit]);
+    let limited = |limit: &str| {
+        let flag = limit.split(' ').next().unwrap_or_default();
+        let output = folder.path().join(flag.trim_start_matches('-'));
+        let flags = format!("--no-pictures --engine obvhs --tolerance 0.05 {limit}");
+        let run = solve(&cornell, &output, &flags);
         run.assert_success();
-        let warning = format!("warning: {} ended the refinement", limit[0]);
+        let warning = format!("warning: {flag} ended the refinement");
         assert!(run.err.contains(&warning), "{}", run.err);
-        let solution = Solution::read(&output.join("solution.rad")).expect("was written");
-        let json = fs::read(output.join("report.json")).expect("was written");
-        let report: serde_json::Value = serde_json::from_slice(&json).expect("is JSON");
-        (solution.report, report["peak_memory"].as_u64())
+        (
+            solution(&output).report,
+            report(&output)["peak_memory"].as_u64(),
+        )
     };
-    let (report, _) = limited(&["--max-elements", "8000"]);
+    let (report, _) = limited("--max-elements 8000");
     assert!(
         (7000..=8100).contains(&report.elements),
         "{}",
         report.elements
     );
     let limit: u64 = 80 << 20;
-    let (report, peak) = limited(&["--memory-limit", "80MiB"]);
+    let (report, peak) = limited("--memory-limit 80MiB");
     assert!(report.elements > 7000, "{}", report.elements);
     assert!(peak.is_none_or(|peak| peak <= limit), "{peak:?}");
 }
@@ -289,19 +272,13 @@ fn a_scene_that_does_not_fit_into_the_memory_limit_is_refused_with_the_cause() {
     }
     fs::write(&path, obj).expect("can be written");
     let output = folder.path().join("out");
-    let arguments = [
-        "solve",
-        text(&path),
-        "-o",
-        text(&output),
-        "--memory-limit",
-        "1MiB",
-    ];
-    let obvhs = run(&[&arguments, &["--engine", "obvhs"]]);
+    let limited = |engine: &str| {
+        let flags = format!("--memory-limit 1MiB --engine {engine}");
+        solve(&path, &output, &flags)
+    };
     let words = ["40000 triangles", "1 MiB may be used", "--memory-limit"];
-    obvhs.assert_refused(1, &words);
+    limited("obvhs").assert_refused(1, &words);
     if cfg!(embree) {
-        run(&[&arguments, &["--engine", "embree"]])
-            .assert_refused(1, &["Embree cannot", "out of memory", "1 MiB"]);
+        limited("embree").assert_refused(1, &["Embree cannot", "out of memory", "1 MiB"]);
     }
 }

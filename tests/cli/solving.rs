@@ -1,52 +1,26 @@
 //! `radiosity solve`, `radiosity info`.
 
-use super::{Run, command, draft, floor, folder, names, radiosity, scene, text};
-use radiosity::solution::Solution;
-use serde_json::Value;
+use super::{
+    PICTURES, RESULTS, draft, finished, floor, folder, names, radiosity, report, scene, solution,
+    solve, start, text,
+};
 use std::fs;
-use std::path::Path;
-use std::process::Stdio;
-
-fn report(folder: &Path) -> Value {
-    let bytes = std::fs::read(folder.join("report.json")).expect("report.json is there");
-    serde_json::from_slice(&bytes).expect("is JSON")
-}
 
 #[test]
 fn a_solve_leaves_solution_mesh_pictures_and_report() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&scene("geometry")),
-        "-o",
-        text(folder.path()),
-        "--preset",
-        "draft",
-        "--max-shots",
-        "1",
-    ]);
+    let flags = "--preset draft --max-shots 1";
+    let run = solve(&scene("geometry"), folder.path(), flags);
     run.assert_success();
-    let expected = [
-        "mesh.png",
-        "report.html",
-        "report.json",
-        "shaded.exr",
-        "shaded.png",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-        "wireframe.png",
-    ];
+    let mut expected = [&RESULTS[..], &PICTURES].concat();
+    expected.sort_unstable();
     assert_eq!(names(folder.path()), expected);
     assert!(
         run.out.contains("Geometry") && run.out.contains("largest number of shots"),
         "{}",
         run.out
     );
-    let stored = Solution::read(&folder.path().join("solution.rad"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(stored.report.shots, 1);
+    assert_eq!(solution(folder.path()).report.shots, 1);
 }
 
 #[test]
@@ -108,57 +82,22 @@ fn the_report_holds_every_figure() {
 fn threads_and_options_are_those_asked_for() {
     let folder = folder();
     let output = folder.path().join("new/and/deep");
-    let arguments = [
-        "--preset",
-        "draft",
-        "--no-pictures",
-        "--threads",
-        "1",
-        "--engine",
-        "obvhs",
-        "--max-shots",
-        "3",
-        "--eps-d",
-        "0.5",
-    ];
-    let run = radiosity(
-        &[
-            &["solve", text(&scene("cornell-box")), "-o", text(&output)],
-            &arguments[..],
-        ]
-        .concat(),
-    );
-    run.assert_success();
+    let flags = "--preset draft --no-pictures --threads 1 --engine obvhs --max-shots 3 --eps-d 0.5";
+    solve(&scene("cornell-box"), &output, flags).assert_success();
     let report = report(&output);
     assert_eq!(report["threads"], 1);
     assert_eq!(report["engine"]["name"], "obvhs");
     assert_eq!(report["shots"], 3);
     assert_eq!(report["stop_reason"], "max-shots");
     assert_eq!(report["options"]["epsilon_d"], 0.5);
-    let left = [
-        "report.html",
-        "report.json",
-        "solution.glb",
-        "solution.ply",
-        "solution.rad",
-        "solution.vtu",
-    ];
-    assert_eq!(names(&output), left);
+    assert_eq!(names(&output), RESULTS);
 }
 
 #[test]
 fn a_profile_accounts_for_the_time() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&scene("cornell-box")),
-        "-o",
-        text(folder.path()),
-        "--preset",
-        "draft",
-        "--no-pictures",
-        "--profile",
-    ]);
+    let flags = "--preset draft --no-pictures --profile";
+    let run = solve(&scene("cornell-box"), folder.path(), flags);
     run.assert_success();
     for part in ["build engine", "shoot", "gather", "rays took"] {
         assert!(run.out.contains(part), "no {part}: {}", run.out);
@@ -185,30 +124,14 @@ fn a_profile_accounts_for_the_time() {
 #[test]
 fn without_an_emitter_all_is_black_and_a_warning_says_why() {
     let folder = folder();
-    let run = radiosity(&[
-        "solve",
-        text(&floor(&folder)),
-        "-o",
-        text(&folder.path().join("out")),
-        "--preset",
-        "draft",
-    ]);
+    let output = folder.path().join("out");
+    let run = solve(&floor(&folder), &output, "--preset draft");
     run.assert_success();
     assert!(run.err.contains("no surface emits"), "{}", run.err);
     assert!(run.out.contains("nothing emits"), "{}", run.out);
-    assert_eq!(
-        report(&folder.path().join("out"))["stop_reason"],
-        "no-emitter"
-    );
-    let stored = Solution::read(&folder.path().join("out/solution.rad"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    assert!(
-        stored
-            .light
-            .irradiance
-            .iter()
-            .all(|e| *e == glam::Vec3::ZERO)
-    );
+    assert_eq!(report(&output)["stop_reason"], "no-emitter");
+    let irradiance = solution(&output).light.irradiance;
+    assert!(irradiance.iter().all(|e| *e == glam::Vec3::ZERO));
 }
 
 /// A lamp in a box whose faces look outwards.
@@ -223,14 +146,7 @@ fn a_room_turned_inside_out_is_said_to_lose_its_light() {
     fs::write(&path, format!("mtllib room.mtl\n{room}{lamp}")).expect("can be written");
     fs::write(folder.path().join("room.mtl"), materials).expect("can be written");
     let output = folder.path().join("out");
-    let run = radiosity(&[
-        "solve",
-        text(&path),
-        "-o",
-        text(&output),
-        "--preset",
-        "draft",
-    ]);
+    let run = solve(&path, &output, "--preset draft");
     run.assert_success();
     let warning = "light falls on the backs of surfaces that radiate from the front only: 100% of the emitted power";
     assert!(run.err.contains(warning), "{}", run.err);
@@ -251,8 +167,7 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
         fs::write(&path, scene).expect("can be written");
         let materials = "newmtl floor\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n";
         fs::write(folder.path().join("lit.mtl"), materials).expect("can be written");
-        let output = folder.path().join("out");
-        let run = radiosity(&["solve", text(&path), "-o", text(&output)]);
+        let run = solve(&path, &folder.path().join("out"), "");
         run.assert_success();
         run.err
     };
@@ -266,18 +181,16 @@ fn a_lamp_that_looks_away_from_everything_is_said_to_lose_its_light() {
 fn options_that_clusters_pass_over_are_warned_of_once() {
     let folder = folder();
     let (path, output) = (floor(&folder), folder.path().join("out"));
-    let solve = |more: &[&str]| {
-        let solve = ["solve", text(&path), "-o", text(&output), "--no-pictures"];
-        let run = radiosity(&[&solve[..], more].concat());
+    let said = |flags: &str| {
+        let run = solve(&path, &output, &format!("--no-pictures {flags}"));
         run.assert_success();
         run.err
     };
     let begin = "no effect on patches that shoot as clusters";
-    let formula = ["--form-factor", "polygon"];
-    let options = [&["--raw-form-factors", "--shooting", "mean"][..], &formula].concat();
-    assert!(!solve(&options).contains(begin), "one patch is no cluster");
-    assert!(!solve(&["--cluster-from", "0"]).contains(begin));
-    let said = solve(&[&options[..], &["--cluster-from", "0"]].concat());
+    let options = "--raw-form-factors --shooting mean --form-factor polygon";
+    assert!(!said(options).contains(begin), "one patch is no cluster");
+    assert!(!said("--cluster-from 0").contains(begin));
+    let said = said(&format!("{options} --cluster-from 0"));
     let warning = format!(
         "{begin}, as all do with more than 0 (cluster_from): raw_form_factors, shooting = mean, form_factor = polygon"
     );
@@ -294,17 +207,11 @@ fn a_solve_whose_progress_nobody_reads_any_more_is_not_lost() {
     let folder = folder();
     let output = folder.path().join("out");
     let box_ = scene("cornell-box");
-    let arguments = ["solve", text(&box_), "-o", text(&output), "--no-pictures"];
-    let child = command()
-        .args(arguments)
-        .args(["--preset", "draft", "--progress", "json"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn();
-    let mut child = child.expect("can be started");
+    let solve = ["solve", text(&box_), "-o", text(&output), "--no-pictures"];
+    let more = ["--preset", "draft", "--progress", "json"];
+    let mut child = start(&[&solve[..], &more].concat());
     drop(child.stdout.take());
-    let run: Run = child.wait_with_output().expect("ends").into();
-    run.assert_success();
+    finished(child).assert_success();
     assert!(output.join("solution.rad").exists() && output.join("report.json").exists());
 }
 

@@ -1,23 +1,22 @@
 //! What the command says, how, and to whom.
 
-use super::{folder, names, radiosity, scene, text};
+use super::{folder, names, radiosity, scene, solve, text};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
-const LIGHT: [&str; 5] = ["--preset", "draft", "--no-pictures", "--formats", "none"];
-
-fn solve(flags: &[&str]) -> super::Run {
+/// A quick solve with those flags.
+fn quick(flags: &str) -> super::Run {
     let folder = folder();
-    let scene = scene("cornell-box");
-    let solve = ["solve", text(&scene), "-o", text(folder.path())];
-    let run = radiosity(&[&solve[..], &LIGHT, flags].concat());
+    let flags = format!("--preset draft --no-pictures --formats none {flags}");
+    let run = solve(&scene("cornell-box"), folder.path(), &flags);
     run.assert_success();
     run
 }
 
 #[test]
 fn json_lines_tell_a_program_how_far_it_is() {
-    let run = solve(&["--progress", "json"]);
+    let run = quick("--progress json");
     let lines: Vec<Value> = run
         .out
         .lines()
@@ -46,22 +45,15 @@ fn json_lines_tell_a_program_how_far_it_is() {
 
 #[test]
 fn quiet_says_nothing_and_colours_are_for_terminals() {
-    let run = solve(&["--quiet"]);
+    let run = quick("--quiet");
     assert_eq!((run.out.as_str(), run.err.as_str()), ("", ""));
     let folder = folder();
     let path = super::floor(&folder);
-    let dark = [
-        "solve",
-        text(&path),
-        "-o",
-        text(folder.path()),
-        "--no-pictures",
-    ];
-    let run = radiosity(&dark);
+    let run = solve(&path, folder.path(), "--no-pictures");
     assert!(run.err.starts_with("warning: "), "{}", run.err);
-    let quiet = radiosity(&[&dark[..], &["-q"]].concat());
+    let quiet = solve(&path, folder.path(), "--no-pictures -q");
     assert_eq!((quiet.code, quiet.err.as_str()), (Some(0), ""));
-    let failing = radiosity(&["solve", "/nowhere", "-o", text(folder.path()), "-q"]);
+    let failing = solve(Path::new("/nowhere"), folder.path(), "-q");
     failing.assert_refused(3, &["/nowhere"]);
     assert!(!run.err.contains('\u{1b}') && !failing.err.contains('\u{1b}'));
 }
@@ -91,7 +83,7 @@ fn many_warnings_are_counted() {
     assert_eq!(said, 21, "{}", run.err);
     let last = run.err.lines().last().unwrap_or_default();
     assert!(
-        last.contains("more warnings; all of them are in the report"),
+        last.contains("more warnings; the report of a solve has all of them"),
         "{last}"
     );
 }

@@ -3,6 +3,7 @@
 
 pub mod closed_form;
 pub mod reference;
+pub mod sessions;
 pub mod shapes;
 
 use radiosity::solver::Preset;

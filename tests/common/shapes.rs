@@ -66,20 +66,26 @@ fn add_surface(scene: &mut Scene, material: u32, corners: Corners) {
     scene.input_polygons += 1;
 }
 
+/// The sides of a cuboid, outwards: left, right, bottom, top, back, front. The bits of a corner's number say along which axes it is high,
+/// from the lowest on x, y and z.
+pub const CUBOID: [[usize; 4]; 6] = [
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+];
+
+/// A corner of a cuboid by its number in [`CUBOID`].
+pub fn cuboid_corner(number: usize, [low, high]: [DVec3; 2]) -> DVec3 {
+    let along = |axis: usize| [low, high][number >> axis & 1][axis];
+    DVec3::new(along(0), along(1), along(2))
+}
+
 /// Adds the sides of a cuboid, which radiate outwards; or inwards, as a room.
-pub fn add_cuboid(scene: &mut Scene, material: u32, [low, high]: [DVec3; 2], inwards: bool) {
-    let at = |x: usize, y: usize, z: usize| {
-        DVec3::new([low.x, high.x][x], [low.y, high.y][y], [low.z, high.z][z])
-    };
-    let outwards = [
-        [at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)],
-        [at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)],
-        [at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1)],
-        [at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0)],
-        [at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)],
-        [at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)],
-    ];
-    for [a, b, c, d] in outwards {
+pub fn add_cuboid(scene: &mut Scene, material: u32, ends: [DVec3; 2], inwards: bool) {
+    for [a, b, c, d] in CUBOID.map(|side| side.map(|number| cuboid_corner(number, ends))) {
         add_quad(
             scene,
             material,

@@ -1,5 +1,6 @@
 //! Small scenes, the pieces that a mesh makes of them, and what holds for all pieces.
 
+use crate::common::shapes::{CUBOID, cuboid_corner};
 use glam::{DQuat, DVec3, Vec3};
 use radiosity::geometry::polygon::{diameter, vector_area};
 use radiosity::mesh::{Mesh, MeshLimits, Regions, regions, split_at_contacts};
@@ -85,28 +86,9 @@ pub fn floor(size: f64) -> Polygons {
 
 /// A box around the origin that faces outwards: left, right, bottom, top, back, front.
 pub fn cuboid(size: DVec3) -> Polygons {
-    let corner = |i: u32| {
-        let high = DVec3::new(
-            f64::from(i & 1),
-            f64::from(i >> 1 & 1),
-            f64::from(i >> 2 & 1),
-        );
-        (high - DVec3::splat(0.5)) * size
-    };
-    let sides = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    Polygons(
-        sides
-            .iter()
-            .map(|side| side.iter().map(|i| corner(*i)).collect())
-            .collect(),
-    )
+    let ends = [-0.5 * size, 0.5 * size];
+    let side = |side: [usize; 4]| side.map(|number| cuboid_corner(number, ends)).to_vec();
+    Polygons(CUBOID.map(side).to_vec())
 }
 
 /// A sphere of triangles with the given rings.
@@ -207,12 +189,7 @@ pub fn pieces_down_to(scene: &Scene, min_size: f64) -> Pieces {
 
 /// Scene corners of a surface.
 pub fn corners(scene: &Scene, surface: usize) -> Vec<DVec3> {
-    scene.surfaces[surface]
-        .corners
-        .indices()
-        .iter()
-        .map(|v| scene.vertices[*v as usize])
-        .collect()
+    scene.positions(&scene.surfaces[surface]).collect()
 }
 
 /// For each surface those of the region of which it is the first: itself alone if it is in none, none if another is the first.

@@ -131,11 +131,8 @@ fn lit_room() -> Scene {
     );
     // The ceiling, at y = 1, shines.
     for surface in &mut scene.surfaces {
-        let corners = surface.corners.indices().iter();
-        if corners
-            .clone()
-            .all(|v| scene.vertices[*v as usize].y == 1.0)
-        {
+        let mut corners = surface.corners.places(&scene.vertices);
+        if corners.all(|corner| corner.y == 1.0) {
             surface.material = light;
         }
     }

@@ -220,9 +220,8 @@ fn a_plate_in_a_room_leaves_what_the_closed_forms_leave() {
     let lies_at = |height: f64| {
         (0..6)
             .find(|k| {
-                let list = scene.surfaces[*k].corners.indices().iter();
-                list.clone()
-                    .all(|v| scene.vertices[*v as usize].z == height)
+                let mut corners = scene.positions(&scene.surfaces[*k]);
+                corners.all(|corner| corner.z == height)
             })
             .expect("is a side of the room")
     };

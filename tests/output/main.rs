@@ -32,7 +32,7 @@ fn a_failing_writer_leaves_the_old_file_and_nothing_else() -> Outcome {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("result.txt");
     fs::write(&path, "old")?;
-    let outcome = write_atomically(&path, |out| {
+    let outcome: Result<(), _> = write_atomically(&path, |out| {
         out.write_all(&[b'x'; 100_000])?;
         Err(io::Error::other("the disk is full"))
     });

@@ -1,6 +1,7 @@
 //! What a solution file may hold: whatever is wrong with it is found when it is read, or before it is written.
 
-use super::resume::{Batches, HEADER, settings};
+use super::common::sessions::Batches;
+use super::resume::{HEADER, settings};
 use super::{bundled, draft, file};
 use radiosity::mesh::{Element, Lattice, Mesh, Vertex};
 use radiosity::scene::{Camera, Scene};

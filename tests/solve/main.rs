@@ -23,14 +23,14 @@ mod stopping;
 mod threads;
 mod variants;
 
+use common::sessions::{bits, file};
 use common::{ENGINE, scene_folder};
 use radiosity::scene::Scene;
-use radiosity::solution::{Seconds, Solution};
+use radiosity::solution::Solution;
 use radiosity::solver::{Options, Preset, Silent};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Settings, solve};
 use std::collections::BTreeMap;
-use std::io::Cursor;
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// The engines that are there: obvhs always, Embree if it was built in.
@@ -76,20 +76,6 @@ fn solved_by(scene: &Scene, options: Options, engine: EngineChoice, threads: usi
         ..Settings::default()
     };
     solve(scene, &settings, &mut Silent).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The solution file without what may differ: times.
-fn bits(mut solution: Solution) -> Vec<u8> {
-    solution.report.seconds = Seconds::default();
-    file(&solution)
-}
-
-fn file(solution: &Solution) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    bytes.into_inner()
 }
 
 fn draft() -> Options {

@@ -3,9 +3,10 @@
 use super::clusters::clustered;
 use super::common::ENGINE;
 use super::common::reference::{Deviation, Sample, table};
+use super::common::sessions::Batches;
 use super::common::shapes::{add_grey, add_level};
 use super::furnace;
-use super::resume::{Batches, settings};
+use super::resume::settings;
 use super::{bundled, draft, solved};
 use glam::DVec3;
 use radiosity::radiometry::Spectrum;

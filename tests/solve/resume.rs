@@ -1,29 +1,17 @@
 //! A solve that is left and taken up again: the same bits, no work twice.
 
 use super::common::ENGINE;
+use super::common::sessions::Batches;
 use super::{bits, bundled, draft, engines, file, solved, solved_by};
 use glam::DVec3;
 use radiosity::scene::Scene;
 use radiosity::solution::{Prober, Solution};
-use radiosity::solver::{Control, Observer, Options, Preset, Progress, Silent, StopReason};
+use radiosity::solver::{Options, Preset, Silent, StopReason};
 use radiosity::visibility::EngineChoice;
 use radiosity::{Run, Settings, SolveError, solve};
 
 /// Bytes of a solution file before its payload.
 pub(super) const HEADER: usize = 24;
-
-/// Lets some batches of work be done, then stops.
-pub(super) struct Batches(pub usize);
-
-impl Observer for Batches {
-    fn progress(&mut self, _: &Progress) -> Control {
-        if self.0 == 0 {
-            return Control::Stop;
-        }
-        self.0 -= 1;
-        Control::Continue
-    }
-}
 
 pub(super) fn settings(options: Options, engine: EngineChoice, threads: usize) -> Settings {
     Settings {

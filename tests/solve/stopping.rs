@@ -21,11 +21,7 @@ fn assert_whole(solution: &Solution) {
             .iter()
             .all(|e| e.is_finite() && e.min_element() >= 0.0)
     );
-    let mut bytes = Cursor::new(Vec::new());
-    solution
-        .write(&mut bytes)
-        .expect("memory can be written to");
-    let again = Solution::decode(bytes.get_ref()).unwrap_or_else(|found| panic!("{found}"));
+    let again = Solution::decode(&file(solution)).unwrap_or_else(|found| panic!("{found}"));
     assert_eq!(again.light, solution.light);
     assert_eq!(again.report.stop_reason, solution.report.stop_reason);
 }

@@ -42,12 +42,9 @@ struct Bounds {
 impl Neighbours {
     pub fn new(surfaces: &[Surface], positions: &[DVec3]) -> Self {
         let numbered = surfaces.iter().zip(0..);
-        let boxes = numbered.map(|(surface, number)| {
-            let corners = surface.corners.indices().iter();
-            Around {
-                bounds: Bounds::around(corners.map(|v| positions[*v as usize])),
-                surface: number,
-            }
+        let boxes = numbered.map(|(surface, number)| Around {
+            bounds: Bounds::around(surface.corners.places(positions)),
+            surface: number,
         });
         let mut boxes: Vec<Around> = boxes.collect();
         // Room for more than there will be takes no memory, growing would.

@@ -26,8 +26,7 @@ impl<'a> Shapes<'a> {
 
     pub fn corners(&self, surface: u32) -> Vec<DVec3> {
         let corners = self.surfaces[surface as usize].corners;
-        let corners = corners.indices().iter();
-        corners.map(|v| self.positions[*v as usize]).collect()
+        corners.places(&self.positions).collect()
     }
 
     pub fn emits(&self, surface: u32) -> bool {

@@ -31,7 +31,6 @@ pub fn write_matrix_market(
     cut_off: f64,
     feed: impl Feed,
 ) -> Result<(Certificate, Dropped), WriteError> {
-    let mut result = None;
     write_atomically(path, |out| {
         writeln!(out, "%%MatrixMarket matrix coordinate real general")?;
         for line in table.head() {
@@ -41,13 +40,9 @@ pub fn write_matrix_market(
             out,
             "% number, exposed area (m^2) and label of the rows and columns:"
         )?;
-        for (number, row) in (1..).zip(table.rows) {
-            writeln!(
-                out,
-                "% {number} {} {}",
-                super::number(row.area),
-                row.label.replace(['\n', '\r'], " ")
-            )?;
+        for (place, row) in (1..).zip(table.rows) {
+            let label = row.label.replace(['\n', '\r'], " ");
+            writeln!(out, "% {place} {} {label}", number(row.area))?;
         }
         let counts_at = out.stream_position()?;
         write_counts(out, table.rows.len(), 0, &Dropped::default())?;
@@ -62,7 +57,9 @@ pub fn write_matrix_market(
             for (column, value) in (1..).zip(row.values) {
                 whole += area * value;
                 if *value == 0.0 {
-                } else if *value < cut_off {
+                    continue;
+                }
+                if *value < cut_off {
                     dropped.entries += 1;
                     dropped.share += area * value;
                 } else {
@@ -78,10 +75,8 @@ pub fn write_matrix_market(
         out.seek(SeekFrom::Start(counts_at))?;
         write_counts(out, table.rows.len(), kept, &dropped)?;
         out.seek(SeekFrom::End(0))?;
-        result = Some((certificate, dropped));
-        Ok(())
-    })?;
-    Ok(result.expect("the feed has ended well"))
+        Ok((certificate, dropped))
+    })
 }
 
 /// As long whatever the numbers are.
