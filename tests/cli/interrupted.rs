@@ -3,6 +3,7 @@
 use super::{Run, command, folder, radiosity, scene, text};
 use radiosity::solution::Solution;
 use radiosity::solver::StopReason;
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -129,4 +130,36 @@ fn pictures_that_are_interrupted_are_left_out() {
         "solution.vtu",
     ];
     assert_eq!(written, expected);
+}
+
+#[test]
+#[cfg(unix)]
+fn what_nohup_started_outlives_its_terminal() {
+    let folder = folder();
+    let output = folder.path().join("solved");
+    let geometry = scene("geometry");
+    // `exec` keeps what `trap` has the shell ignore, as `nohup` does.
+    let mut child = Command::new("sh")
+        .args(["-c", "trap '' HUP; exec \"$@\"", "sh"])
+        .arg(env!("CARGO_BIN_EXE_radiosity"))
+        .args(["solve", text(&geometry), "-o", text(&output), "--preset"])
+        .args(["draft", "--progress", "json", "--no-pictures"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("can be started");
+    let mut said = BufReader::new(child.stdout.take().expect("is a pipe"));
+    // What it says first comes when signals are caught.
+    let mut first = String::new();
+    said.read_line(&mut first).expect("can be read");
+    let kill = Command::new("sh")
+        .args(["-c", &format!("kill -HUP {}", child.id())])
+        .status();
+    assert!(kill.expect("can be started").success());
+    let mut rest = String::new();
+    said.read_to_string(&mut rest).expect("can be read");
+    assert!(child.wait().expect("ends").success());
+    let solution = Solution::read(&output.join("solution.rad")).expect("was written");
+    assert_eq!(solution.report.stop_reason, StopReason::Converged, "{rest}");
 }
