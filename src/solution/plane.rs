@@ -58,7 +58,8 @@ impl Plane {
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
         let axis = DVec3::AXES[self.axis];
-        if self.along { axis } else { -axis }
+        // From zero, as the others would be -0 otherwise.
+        if self.along { axis } else { DVec3::ZERO - axis }
     }
 
     /// The points, row after row; rows in the order of their coordinate.
