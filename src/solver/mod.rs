@@ -8,6 +8,7 @@ mod audit;
 mod behind;
 mod bounce;
 mod burial;
+mod check;
 mod course;
 mod descent;
 mod error;
