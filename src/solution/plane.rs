@@ -146,6 +146,7 @@ mod tests {
             (wall.columns, wall.rows, wall.normal()),
             (1, 1, DVec3::NEG_X)
         );
+        assert!(wall.normal().y.is_sign_positive(), "no table says -0");
         assert_eq!(wall.points().next(), Some(DVec3::new(1.0, 4.5, 0.55)));
     }
 
