@@ -26,7 +26,7 @@
 //!
 //! * Imports run one way, as each room's first paragraph says.
 //! * The solver does no I/O and prints nothing; it speaks to a [`solver::Observer`].
-//! * `unsafe` lives in the crates `embree4-sys` and `heap`, in [`visibility`] and in `simd` only.
+//! * `unsafe` lives in the crates `embree4-sys`, `hangup` and `heap`, in [`visibility`] and in `simd` only.
 //! * The same input, engine and instruction set give the same bits for any number of threads.
 //!
 //! `tests/tidy` and `tests/solve` hold them.

@@ -13,8 +13,17 @@ pub struct ThreadsError {
     pub reason: String,
 }
 
+/// More threads than this are a mistake: the system would be busy with nothing else than starting them.
+pub(crate) const MOST_THREADS: usize = 1024;
+
 /// A pool of so many threads; 0 for as many as the machine has.
 pub(crate) fn pool(threads: usize) -> Result<ThreadPool, ThreadsError> {
+    if threads > MOST_THREADS {
+        return Err(ThreadsError {
+            threads,
+            reason: format!("expected {MOST_THREADS} at most"),
+        });
+    }
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|e| ThreadsError {
         threads,

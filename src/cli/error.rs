@@ -67,7 +67,9 @@ impl CliError {
             | CliError::Input(_)
             | CliError::Enforce(_)
             | CliError::Matrix(MatrixError::NothingRadiates | MatrixError::TooLarge { .. })
-            | CliError::Solve(SolveError::NotKept | SolveError::OtherScene(_)) => Code::BadInput,
+            | CliError::Solve(
+                SolveError::NotKept | SolveError::OtherScene(_) | SolveError::Scene(_),
+            ) => Code::BadInput,
             CliError::Usage(_) => Code::Usage,
             _ => Code::Failure,
         }

@@ -75,7 +75,7 @@ pub(super) struct SolveFlags {
     #[arg(long, value_parser = named::<Shooting>, help_heading = PROGRESS)]
     shooting: Option<Shooting>,
     /// Converged when unshot over emitted power falls below this
-    #[arg(long, value_name = "FRACTION", value_parser = not_negative, help_heading = PROGRESS)]
+    #[arg(long, value_name = "FRACTION", value_parser = fraction, help_heading = PROGRESS)]
     tolerance: Option<f64>,
     /// Choose the thresholds, in place of a preset, so that the estimated nRMS error of the irradiance is below this
     #[arg(long, value_name = "PERCENT%|FRACTION", value_parser = error, help_heading = PROGRESS)]

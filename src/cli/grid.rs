@@ -78,7 +78,7 @@ impl GridFlags {
             }
             None => {
                 say::result(&table)?;
-                eprint!("{summary}");
+                say::aside(summary.trim_end());
             }
         }
         if let Some(path) = &self.picture {

@@ -66,8 +66,12 @@ impl FromStr for Formats {
         }
         let mut formats = Vec::new();
         for name in list.split(',') {
-            let format = <MeshFormat as ValueEnum>::from_str(name.trim(), true)
-                .map_err(|_| format!("found `{name}`; expected glb, obj, ply, vtu or none"))?;
+            let format = <MeshFormat as ValueEnum>::from_str(name.trim(), true).map_err(|_| {
+                match name.trim() {
+                    "none" => "found `none` beside others; expected it alone".to_owned(),
+                    _ => format!("found `{name}`; expected glb, obj, ply, vtu or none"),
+                }
+            })?;
             if !formats.contains(&format) {
                 formats.push(format);
             }

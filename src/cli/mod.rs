@@ -29,7 +29,7 @@ mod viewpoint;
 #[cfg(feature = "viewer")]
 mod window;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use error::CliError;
 pub use memory::{load_scene, peak_memory};
 use std::ffi::OsString;
@@ -80,9 +80,23 @@ pub fn main() -> ExitCode {
     run(std::env::args_os())
 }
 
+/// The same commands, but a negative number after a flag is its value: one that is not allowed is then said to be none of the flag's, rather
+/// than to be an unknown flag.
+fn understanding_numbers(command: clap::Command) -> clap::Command {
+    let understanding = |arg: clap::Arg| {
+        let is_flag_with_value = arg.get_action().takes_values() && !arg.is_positional();
+        match is_flag_with_value {
+            true => arg.allow_negative_numbers(true),
+            false => arg,
+        }
+    };
+    command.mut_subcommands(|subcommand| subcommand.mut_args(understanding))
+}
+
 /// Runs a command line, the name of the program first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let matches = understanding_numbers(Cli::command()).try_get_matches_from(arguments);
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => error.exit(),
     };

@@ -66,7 +66,9 @@ fn probe(solution: &Solution, points: &Path, arguments: &Arguments) -> Result<Co
         } else {
             "points lie"
         };
-        eprintln!("{missed} {lie} on no surface that faces that way: left empty");
+        say::aside(format_args!(
+            "{missed} {lie} on no surface that faces that way: left empty"
+        ));
     }
     Ok(Code::Success)
 }

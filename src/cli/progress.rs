@@ -5,6 +5,7 @@ use super::say::is_quiet;
 use crate::output::{Estimated, History, Moment, abandon_drafts};
 use crate::solver::{Control, Estimate, Observer, Phase, Progress};
 use clap::ValueEnum;
+use hangup::keep_hangup_ignored;
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -24,9 +25,9 @@ pub(super) fn catch_interrupts() {
         if INTERRUPTED.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping: writing the solution so far (once more to quit at once)");
+        say::aside("\nstopping: writing the solution so far (once more to quit at once)");
     };
-    if let Err(error) = ctrlc::set_handler(handler) {
+    if let Err(error) = keep_hangup_ignored(|| ctrlc::set_handler(handler)) {
         say::warning(&format!("ctrl-C will lose the solution: {error}"));
     }
 }
@@ -35,10 +36,10 @@ pub(super) fn catch_interrupts() {
 pub(super) fn leave_nothing_on_interrupt() {
     let handler = || {
         abandon_drafts();
-        eprintln!("\ninterrupted: the file that was being written is not left behind");
+        say::aside("\ninterrupted: the file that was being written is not left behind");
         std::process::exit(130);
     };
-    if let Err(error) = ctrlc::set_handler(handler) {
+    if let Err(error) = keep_hangup_ignored(|| ctrlc::set_handler(handler)) {
         say::warning(&format!(
             "ctrl-C may leave a temporary file behind: {error}"
         ));

@@ -44,10 +44,16 @@ pub(super) fn line(text: impl std::fmt::Display) {
     let _ = result(format!("{text}\n"));
 }
 
+/// Lines on standard error. Where it leads nowhere any more, as when its terminal is gone or a disk is full, the work goes on: what it
+/// writes must not be lost for want of a remark.
+pub(super) fn aside(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
 /// One line of warning.
 pub(super) fn warning(text: &str) {
     if !is_quiet() {
-        eprintln!("{} {text}", marked("warning:", "33"));
+        aside(format_args!("{} {text}", marked("warning:", "33")));
     }
 }
 
@@ -64,7 +70,7 @@ pub(super) fn warnings(texts: &[String]) {
 
 /// The reason why the command ends.
 pub(super) fn error(text: &str) {
-    eprintln!("{} {text}", marked("error:", "31"));
+    aside(format_args!("{} {text}", marked("error:", "31")));
 }
 
 /// In bold and that colour, where somebody looks and has not asked for none (<https://no-color.org>).

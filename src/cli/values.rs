@@ -101,7 +101,7 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    number(text, |v| v > 0.0 && v < 1e9, "a positive number")
+    number(text, |v| v > 0.0 && v < 1e9, "a positive number below 1e9")
 }
 
 /// A field of view.

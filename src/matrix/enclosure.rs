@@ -53,9 +53,10 @@ impl Enclosure {
     /// Makes a scene ready.
     ///
     /// # Errors
-    /// When no surface radiates, there are more than 200,000 of them, an option cannot be met, or the visibility engine cannot be built.
+    /// When the scene or an option makes no sense, no surface radiates, there are more than 200,000 of them, or the visibility engine cannot be built.
     pub fn new(named: &NamedScene, options: &Options) -> Result<Self, MatrixError> {
         options.check()?;
+        named.scene.check().map_err(MatrixError::Scene)?;
         let pool = pool(options.threads)?;
         let scene = &named.scene;
         check_count(scene, options.max_area)?;

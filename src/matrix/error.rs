@@ -14,6 +14,9 @@ pub enum MatrixError {
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] ThreadsError),
+    /// The scene was built in code, and makes no sense: see [`Scene::check`](crate::scene::Scene::check).
+    #[error("the scene has {0}")]
+    Scene(String),
     /// There is no surface.
     #[error("no surface radiates: there is nothing to compute form factors of")]
     NothingRadiates,

@@ -62,10 +62,10 @@ pub struct Page<'a> {
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222;background:#fff}\
 h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:2rem;border-bottom:1px solid #ddd}\
 table{border-collapse:collapse;margin:.5rem 0}td,th{padding:.15rem .9rem .15rem 0;text-align:left;vertical-align:top}\
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}figure{margin:1rem 0}img{max-width:100%;height:auto}\
+td.n,th.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}figure{margin:1rem 0}img{max-width:100%;height:auto}\
 figcaption{color:#666}.plots{display:flex;flex-wrap:wrap;gap:1rem}.plots svg{width:28rem;max-width:100%}\
 svg text{font:11px sans-serif;fill:#444}svg .grid{stroke:#e4e4e4}svg .curve{fill:none;stroke:#21618c;stroke-width:2}\
-svg .marks{fill:none;stroke:#b03a2e;stroke-dasharray:5 4}svg circle.mark,svg text.mark{fill:#b03a2e}.warning{color:#8a4b00}";
+svg .marks{fill:none;stroke:#b03a2e;stroke-dasharray:5 4}svg circle.mark,svg text.mark{fill:#b03a2e}svg text.mark{paint-order:stroke;stroke:#fff;stroke-width:3px}.warning{color:#8a4b00}";
 
 /// Writes the page. It is well-formed XML, too.
 ///

@@ -14,6 +14,7 @@ use crate::threads::pool;
 use crate::visibility::{Clocked, EngineChoice, Visibility, VisibilityError, build_within};
 use crate::words::counted;
 use rayon::ThreadPool;
+use std::fmt;
 use std::time::{Duration, Instant};
 
 /// A solve in progress, or one that has ended. An observer that stops it does not end it: [`Run::go`] goes on where it was, in this
@@ -32,15 +33,28 @@ pub struct Run {
     reserved: u64,
 }
 
+impl fmt::Debug for Run {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut run = f.debug_struct("Run");
+        run.field("engine", &self.visibility.info());
+        run.field("spent", &self.spent).finish_non_exhaustive()
+    }
+}
+
 impl Run {
     /// Meshes the scene and builds the engine; nothing is shot yet.
+    ///
+    /// # Errors
+    /// Those of [`solve`](super::solve).
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, SolveError> {
         let started = Instant::now();
+        scene.check().map_err(SolveError::Scene)?;
         let target = settings.target.as_ref().map(|target| target.report());
         let options = match &target {
             Some(target) => target.options()?,
             None => settings.options.clone(),
         };
+        options.check().map_err(SolveError::Option)?;
         let pool = pool(settings.threads)?;
         let threads = pool.current_num_threads();
         let mesh = pool.install(|| Mesh::new(&scene, options.limits));
@@ -76,6 +90,7 @@ impl Run {
             options = target.options()?;
             report.target = Some(target);
         }
+        options.check().map_err(SolveError::Option)?;
         if differs(&options, &report.options) {
             continuation.course.reopen();
             note(report, "other options");
@@ -185,6 +200,7 @@ impl Run {
         let Some(known) = &mut solution.continuation else {
             return Err(SolveError::NotKept);
         };
+        scene.check().map_err(SolveError::Scene)?;
         known
             .scene
             .differs_but_in_emission(&scene)

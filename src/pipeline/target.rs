@@ -53,6 +53,12 @@ impl Target {
 impl TargetReport {
     /// The options of the round that is under way.
     pub(super) fn options(&self) -> Result<Options, SolveError> {
+        let found = self.n_rms;
+        if found.is_nan() || found <= 0.0 {
+            return Err(SolveError::Option(format!(
+                "n_rms is {found}; expected more than 0"
+            )));
+        }
         let options = Options::at(self.strictness).with(&self.fixed);
         let mut options = options.map_err(SolveError::Option)?;
         options.audit_points = options.audit_points.max(FEWEST_POINTS);

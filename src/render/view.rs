@@ -36,6 +36,9 @@ impl View {
     ///
     /// # Errors
     /// When `build` fails.
+    ///
+    /// # Panics
+    /// If the camera's eye is no number; [`Camera::check`] tells whether a camera that was made in code is sound.
     pub fn new<E>(
         mesh: &LitMesh,
         camera: &Camera,

@@ -2,7 +2,9 @@
 
 use super::cameras::names_a_file;
 use super::text::quote;
-use super::{Camera, Scene, Surface, limits};
+use super::{Camera, Material, Scene, Surface, limits};
+use crate::radiometry::Spectrum;
+use glam::DVec3;
 
 impl Scene {
     /// Refuses a scene that differs in anything that light depends on but emission; the error says in what.
@@ -36,22 +38,37 @@ impl Scene {
         Ok(())
     }
 
-    /// Checks the indices, the unit and the cameras of a scene that was stored. The error says what does not fit.
+    /// Checks what a scene that was stored, or built in code, could have wrong and none that was loaded has: indices, coordinates,
+    /// materials, the unit and the cameras. Not whether its quads are flat and convex. The error says what does not fit.
     pub fn check(&self) -> Result<(), String> {
-        let vertices = self.vertices.len() as u64;
-        let sound = |surface: &Surface| {
-            let corners = surface.corners.indices().iter();
-            (surface.material as usize) < self.materials.len()
-                && corners.into_iter().all(|v| u64::from(*v) < vertices)
-        };
-        if !self.surfaces.iter().all(sound) {
-            return Err("a surface whose corners or material are out of range".into());
+        for (number, surface) in self.surfaces.iter().enumerate() {
+            self.check_indices(surface)
+                .map_err(|found| format!("a surface (number {number}) with {found}"))?;
         }
-        if !self.vertices.iter().all(|v| v.is_finite()) {
-            return Err("a corner that is nowhere".into());
+        // Also false of what is no number.
+        let within = |v: &DVec3| v.abs().cmple(DVec3::splat(limits::COORDINATE)).all();
+        if let Some(number) = self.vertices.iter().position(|v| !within(v)) {
+            let most = limits::COORDINATE;
+            let found = self.vertices[number];
+            return Err(format!(
+                "a vertex (number {number}) that is nowhere: {found}, where coordinates are numbers up to {most:e}"
+            ));
         }
+        self.materials.iter().try_for_each(Material::check)?;
         check_unit(self.metres_per_unit)?;
         self.cameras.iter().try_for_each(Camera::check)
+    }
+
+    fn check_indices(&self, surface: &Surface) -> Result<(), String> {
+        let (vertices, materials) = (self.vertices.len(), self.materials.len());
+        let corners = surface.corners.indices();
+        if let Some(corner) = corners.iter().find(|v| **v as usize >= vertices) {
+            return Err(format!("vertex {corner} of {vertices}"));
+        }
+        match surface.material {
+            known if (known as usize) < materials => Ok(()),
+            unknown => Err(format!("material {unknown} of {materials}")),
+        }
     }
 }
 
@@ -64,6 +81,27 @@ pub(crate) fn check_unit(metres: f64) -> Result<(), String> {
     Err(format!(
         "a unit of {metres} m, where it has from {least:e} to {most:e}"
     ))
+}
+
+impl Material {
+    /// Checks that light dies out on it and that what it emits can be summed up. The error says what does not fit.
+    pub fn check(&self) -> Result<(), String> {
+        let each = |of: Spectrum, fits: &dyn Fn(f32) -> bool| of.to_array().into_iter().all(fits);
+        let (reflectance, radiance) = (self.reflectance, self.emitted_radiance);
+        let name = quote(&self.name);
+        if !each(reflectance, &|of| (0.0..1.0).contains(&of)) {
+            return Err(format!(
+                "a material {name} with the reflectance {reflectance}, where each channel has from 0 to less than 1"
+            ));
+        }
+        match each(radiance, &|of| (0.0..=limits::RADIANCE).contains(&of)) {
+            true => Ok(()),
+            false => Err(format!(
+                "a material {name} with the emitted radiance {radiance}, where each channel has from 0 to {:e}",
+                limits::RADIANCE
+            )),
+        }
+    }
 }
 
 impl Camera {
@@ -104,13 +142,37 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     #[test]
     fn the_view_of_a_scene_at_the_limit_of_coordinates_is_sound() {
         let limit = DVec3::splat(limits::COORDINATE);
         let far = crate::scene::cameras::overview((-limit, limit));
         assert_eq!(far.check(), Ok(()));
+    }
+
+    #[test]
+    fn a_material_on_which_light_grows_or_that_is_no_number_is_not_sound() {
+        let sound = Material {
+            name: "wall".into(),
+            reflectance: Spectrum::splat(0.5),
+            emitted_radiance: Spectrum::ZERO,
+        };
+        assert_eq!(sound.check(), Ok(()));
+        for wrong in [-0.1, 1.0, f32::NAN, f32::INFINITY] {
+            let mut material = sound.clone();
+            material.reflectance.y = wrong;
+            let found = material.check().expect_err("does not absorb");
+            assert!(found.contains("`wall` with the reflectance"), "{found}");
+        }
+        for wrong in [-1.0, f32::NAN, f32::INFINITY] {
+            let mut material = sound.clone();
+            material.emitted_radiance.z = wrong;
+            let found = material.check().expect_err("cannot be summed up");
+            assert!(
+                found.contains("`wall` with the emitted radiance"),
+                "{found}"
+            );
+        }
     }
 
     #[test]

@@ -104,6 +104,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// A polygonal scene with diffuse materials. Lengths are in the scene's own unit, right-handed, y up.
+///
+/// Those that are loaded keep all that is said of the fields. One may be built in code as well: [`Scene::check`] tells what does not
+/// fit, and a solve begins with it. A quad that is not flat and convex is for two triangles; a surface without area receives nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The name shown in reports: the scene file's `name`, or the file's stem.
@@ -116,7 +119,7 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     /// Indexed by [`Surface::material`].
     pub materials: Vec<Material>,
-    /// At least one: the reader adds a view of the whole scene where the file names none.
+    /// For pictures; the reader adds a view of the whole scene where the file names none.
     pub cameras: Vec<Camera>,
     /// Polygons as read from the file, before any was split or dropped.
     pub input_polygons: usize,

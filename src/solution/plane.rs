@@ -58,7 +58,8 @@ impl Plane {
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
         let axis = DVec3::AXES[self.axis];
-        if self.along { axis } else { -axis }
+        // From zero, as the others would be -0 otherwise.
+        if self.along { axis } else { DVec3::ZERO - axis }
     }
 
     /// The points, row after row; rows in the order of their coordinate.
@@ -145,6 +146,7 @@ mod tests {
             (wall.columns, wall.rows, wall.normal()),
             (1, 1, DVec3::NEG_X)
         );
+        assert!(wall.normal().y.is_sign_positive(), "no table says -0");
         assert_eq!(wall.points().next(), Some(DVec3::new(1.0, 4.5, 0.55)));
     }
 

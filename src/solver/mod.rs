@@ -8,6 +8,7 @@ mod audit;
 mod behind;
 mod bounce;
 mod burial;
+mod check;
 mod conserve;
 mod course;
 mod descent;

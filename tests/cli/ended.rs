@@ -133,3 +133,22 @@ fn the_memory_limit_holds_for_the_largest_picture_too() {
     limited("").assert_refused(1, &words);
     limited("--no-pictures").assert_success();
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_remark_that_nobody_can_read_does_not_lose_the_solution() {
+    let folder = folder();
+    let output = folder.path().join("out");
+    let full = || fs::File::create("/dev/full").expect("can be opened");
+    // It has converged of nothing, which is worth a warning.
+    let floor = super::floor(&folder);
+    let solve = ["solve", text(&floor), "-o", text(&output), "--no-pictures"];
+    let status = super::command().args(solve).stderr(full()).status();
+    assert_eq!(status.expect("can be started").code(), Some(0));
+    assert!(output.join("solution.rad").exists());
+    let status = super::command()
+        .args(["info", "no.obj"])
+        .stderr(full())
+        .status();
+    assert_eq!(status.expect("can be started").code(), Some(3));
+}

@@ -5,6 +5,8 @@ use super::{
     wait_until,
 };
 use radiosity::solver::StopReason;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -85,4 +87,33 @@ fn pictures_that_are_interrupted_are_left_out() {
     let run = finished(child);
     assert_eq!(run.code, Some(130), "{}", run.err);
     assert_eq!(names(&output), RESULTS);
+}
+
+#[test]
+#[cfg(unix)]
+fn what_nohup_started_outlives_its_terminal() {
+    let folder = folder();
+    let output = folder.path().join("solved");
+    let geometry = scene("geometry");
+    // `exec` keeps what `trap` has the shell ignore, as `nohup` does.
+    let mut child = Command::new("sh")
+        .args(["-c", "trap '' HUP; exec \"$@\"", "sh"])
+        .arg(env!("CARGO_BIN_EXE_radiosity"))
+        .args(["solve", text(&geometry), "-o", text(&output), "--preset"])
+        .args(["draft", "--progress", "json", "--no-pictures"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("can be started");
+    let mut said = BufReader::new(child.stdout.take().expect("is a pipe"));
+    // What it says first comes when signals are caught.
+    let mut first = String::new();
+    said.read_line(&mut first).expect("can be read");
+    send("HUP", &child);
+    let mut rest = String::new();
+    said.read_to_string(&mut rest).expect("can be read");
+    assert!(child.wait().expect("ends").success());
+    let stop_reason = solution(&output).report.stop_reason;
+    assert_eq!(stop_reason, StopReason::Converged, "{rest}");
 }

@@ -121,6 +121,23 @@ fn wrong_usage_ends_with_2() {
 }
 
 #[test]
+fn a_negative_number_is_a_value_that_is_refused_and_no_unknown_flag() {
+    for (flags, expected) in [
+        (["--tolerance", "-1"], "expected a number from 0 to 1"),
+        // Percent were meant, and it would have ended before the first shot.
+        (["--tolerance", "5"], "expected a number from 0 to 1"),
+        (["--meshing-power", "-1"], "expected a number, 0 or more"),
+        (["--eps-d", "-0.5"], "expected a positive number"),
+        (["--time-limit", "-3"], "expected a duration"),
+        (["--threads", "-2"], "expected a number of threads"),
+        (["--formats", "none,ply"], "expected it alone"),
+    ] {
+        let run = radiosity(&[&["solve", "room.obj", "-o", "out"], &flags[..]].concat());
+        run.assert_refused(2, &[flags[0], flags[1], expected]);
+    }
+}
+
+#[test]
 fn a_result_never_replaces_a_file_of_the_scene() {
     let folder = folder();
     let lit = folder.path().join("lit");

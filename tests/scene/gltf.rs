@@ -86,6 +86,16 @@ fn nodes_move_turn_and_mirror() {
 }
 
 #[test]
+fn instances_that_are_not_read_are_not_lost_without_a_word() {
+    let mut document = square();
+    document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    let (scene, warnings) = load(&document);
+    assert_eq!(scene.surfaces.len(), 1);
+    let said = |w: &String| w.contains("`EXT_mesh_gpu_instancing` is not read");
+    assert!(warnings.iter().any(said), "{warnings:?}");
+}
+
+#[test]
 fn a_scene_file_has_the_last_word() {
     let document = square();
     let toml = "geometry = 'it.gltf'\nunit = 'cm'\nup = 'z'\nsides = 'both'\n\

@@ -2,9 +2,10 @@
 
 use super::common::shapes::{add_grey, add_level, empty};
 use super::{bundled, draft, file, solved};
+use radiosity::scene::{Corners, Scene};
 use radiosity::solution::Solution;
-use radiosity::solver::{Control, Observer, Options, Progress, StopReason};
-use radiosity::{Settings, solve};
+use radiosity::solver::{Changes, Control, Observer, Options, Progress, Silent, StopReason};
+use radiosity::{Settings, Target, solve};
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::time::Duration;
 
@@ -230,4 +231,63 @@ fn a_disk_that_fills_up_is_the_reason_wherever_it_does() {
     solution
         .write(&mut Disk::with(length))
         .expect("there is room for all of it");
+}
+
+/// A floor below a lamp.
+fn lamp() -> Scene {
+    let mut scene = empty();
+    let floor = add_grey(&mut scene, 0.5, 0.0);
+    let lamp = add_grey(&mut scene, 0.5, 10.0);
+    let square = [[0.0, 0.0], [1.0, 1.0]];
+    add_level(&mut scene, floor, square, 0.0, true);
+    add_level(&mut scene, lamp, square, 1.0, false);
+    scene
+}
+
+#[test]
+fn a_scene_or_an_option_that_no_solve_could_end_with_is_refused() {
+    let refused = |spoil: &dyn Fn(&mut Scene, &mut Settings), words: &str| {
+        let mut scene = lamp();
+        let mut settings = Settings {
+            options: draft(),
+            ..Settings::default()
+        };
+        spoil(&mut scene, &mut settings);
+        let error = solve(&scene, &settings, &mut Silent).expect_err(words);
+        assert!(error.to_string().contains(words), "{error}");
+    };
+    let triangle = Corners::Triangle([0, 1, 99]);
+    refused(&|of, _| of.surfaces[0].corners = triangle, "vertex 99 of 8");
+    refused(&|of, _| of.surfaces[1].material = 7, "material 7 of 2");
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        refused(
+            &|of, _| of.vertices[3].x = x,
+            "a vertex (number 3) that is nowhere",
+        );
+    }
+    refused(
+        &|of, _| of.materials[0].reflectance.x = f32::NAN,
+        "reflectance",
+    );
+    refused(&|of, _| of.materials[0].reflectance.x = 1.0, "reflectance");
+    refused(
+        &|of, _| of.materials[1].emitted_radiance.x = f32::NAN,
+        "radiance",
+    );
+    refused(&|of, _| of.metres_per_unit = 0.0, "a unit of 0 m");
+    refused(
+        &|_, how| how.options.tolerance = f64::NAN,
+        "tolerance is NaN",
+    );
+    refused(&|_, how| how.options.epsilon_d = -1.0, "epsilon_d is -1");
+    refused(&|_, how| how.threads = 1_000_000, "1000000 threads");
+    let target = |n_rms| {
+        Some(Target {
+            n_rms,
+            fixed: Changes::default(),
+        })
+    };
+    for n_rms in [f64::NAN, 0.0, -0.01] {
+        refused(&|_, how| how.target = target(n_rms), "expected more than 0");
+    }
 }

@@ -258,7 +258,9 @@ fn crates(files: &[File]) -> Vec<String> {
 /// The rooms that are known beforehand; of other crates, one room is as good as another.
 fn owner_of(name: &str) -> Option<&'static str> {
     match name {
-        "clap" | "clap_complete" | "clap_mangen" | "heap" | "indicatif" | "anyhow" => Some("cli"),
+        "clap" | "clap_complete" | "clap_mangen" | "hangup" | "heap" | "indicatif" | "anyhow" => {
+            Some("cli")
+        }
         "obvhs" | "embree4_sys" => Some("visibility"),
         "tobj" | "toml" => Some("scene"),
         "softbuffer" | "winit" => Some("viewer"),

@@ -27,6 +27,9 @@ use nodes::Placed;
 use rustc_hash::FxHashMap;
 use std::path::Path;
 
+/// Says where a node has its mesh once more. A file can be read without, but most of what is in it would be missing.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
+
 /// Reads a glTF file.
 pub(super) fn read(
     path: &Path,
@@ -58,6 +61,13 @@ pub(super) fn read(
         ..
     } = building;
     noticed.report(path, warnings);
+    let mut extensions = file.document.extensions_used();
+    if extensions.any(|name| name == INSTANCES) {
+        let path = path.display();
+        warnings.push(format!(
+            "{path}: the extension `{INSTANCES}` is not read: a mesh with many places is in one of them"
+        ));
+    }
     palette.report(path, warnings);
     geometry.polygons.positions = welder.into_positions();
     geometry.library = palette.finish();
