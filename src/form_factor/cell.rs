@@ -1,11 +1,12 @@
 //! A cell of a source: three or four corners, and how they are split into four.
 
+use super::division::Division;
 use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use std::ops::{Add, Sub};
 
-/// The two shapes that shoot.
+/// The two shapes that shoot, and their quarters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SourceShape {
     /// Three corners; split at the midpoints into three corner triangles and the middle one.
@@ -88,8 +89,9 @@ impl Cell {
         }
     }
 
-    pub(super) fn children(&self) -> [[DVec3; 4]; 4] {
-        self.shape.children(
+    pub(super) fn children(&self, division: Division, level: u32) -> [[DVec3; 4]; 4] {
+        division.children(
+            level,
             self.corners,
             |a, b| (a + b) * 0.5,
             |[a, b, c, d]| (a + b + c + d) * 0.25,
@@ -120,7 +122,7 @@ impl SourceShape {
         }
     }
 
-    /// The corners of the four parts, in the order in which the mesh numbers the children of an element.
+    /// The corners of the four quarters, in the order in which the mesh numbers the children of an element.
     pub fn children<P: Copy>(
         self,
         corners: [P; 4],

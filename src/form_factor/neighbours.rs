@@ -1,38 +1,47 @@
 //! Which cells of a source lie beside which.
 
 use super::cell::SourceShape;
+use super::division::Division;
 use super::source::{CELLS, DEEPEST, level_start};
 use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 /// Cells beside a cell; itself in place of those that are not there.
 pub(super) type Neighbours = [u16; 4];
 
-impl SourceShape {
+impl Division {
     /// The cells of the same level across each side of each cell.
     pub(super) fn neighbours(self) -> &'static [Neighbours] {
-        match self {
-            SourceShape::Triangle => &TRIANGLE_NEIGHBOURS,
-            SourceShape::Quad => &QUAD_NEIGHBOURS,
-        }
+        let table = match self.shape {
+            SourceShape::Triangle => &TRIANGLE,
+            SourceShape::Quad => &QUAD[usize::from(self.upwards)][self.sliced as usize],
+        };
+        table.get_or_init(|| neighbour_table(self))
     }
 }
 
-static TRIANGLE_NEIGHBOURS: LazyLock<Vec<Neighbours>> =
-    LazyLock::new(|| neighbour_table(SourceShape::Triangle));
-static QUAD_NEIGHBOURS: LazyLock<Vec<Neighbours>> =
-    LazyLock::new(|| neighbour_table(SourceShape::Quad));
+type Table = OnceLock<Vec<Neighbours>>;
+
+static TRIANGLE: Table = Table::new();
+/// By the way slices go and by the levels of them.
+static QUAD: [[Table; DEEPEST as usize + 1]; 2] =
+    [const { [const { Table::new() }; DEEPEST as usize + 1] }; 2];
 
 /// Finds who shares a side with whom by subdividing a lattice of integers.
-fn neighbour_table(shape: SourceShape) -> Vec<Neighbours> {
-    const N: i32 = 1 << (DEEPEST + 1);
+fn neighbour_table(division: Division) -> Vec<Neighbours> {
+    // Slices are a quarter as long each time.
+    const N: i32 = 1 << (2 * DEEPEST + 1);
+    let shape = division.shape;
     let mut corners = vec![match shape {
         SourceShape::Triangle => [[0, 0], [N, 0], [0, N], [0, 0]],
         SourceShape::Quad => [[0, 0], [N, 0], [N, N], [0, N]],
     }];
     let half = |a: [i32; 2], b: [i32; 2]| [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-    for parent in 0..level_start(DEEPEST) {
-        corners.extend(shape.children(corners[parent], half, |[a, _, c, _]| half(a, c)));
+    for level in 0..DEEPEST {
+        for parent in level_start(level)..level_start(level + 1) {
+            let centre = |[a, _, c, _]: [[i32; 2]; 4]| half(a, c);
+            corners.extend(division.children(level, corners[parent], half, centre));
+        }
     }
     let mut table: Vec<Neighbours> = (0..CELLS as u16).map(|cell| [cell; 4]).collect();
     for level in 0..=DEEPEST {
@@ -59,11 +68,19 @@ mod tests {
 
     #[test]
     fn neighbours_share_a_side() {
-        for (shape, inner_sides) in [
-            (SourceShape::Quad, 2 * (2 * 32 * 31)),
-            (SourceShape::Triangle, 3 * 1024 - 3 * 32),
+        let strip = |sliced, upwards| Division {
+            shape: SourceShape::Quad,
+            sliced,
+            upwards,
+        };
+        for (division, inner_sides) in [
+            (strip(0, false), 2 * (2 * 32 * 31)),
+            (strip(2, false), 2 * (127 * 8 + 128 * 7)),
+            (strip(2, true), 2 * (127 * 8 + 128 * 7)),
+            (strip(DEEPEST, true), 2 * 1023),
+            (Division::even(SourceShape::Triangle), 3 * 1024 - 3 * 32),
         ] {
-            let table = neighbour_table(shape);
+            let table = neighbour_table(division);
             let last = &table[level_start(DEEPEST)..];
             let others = |(cell, row): (usize, &Neighbours)| {
                 row.iter()
@@ -71,7 +88,7 @@ mod tests {
                     .count()
             };
             let linked: usize = last.iter().enumerate().map(others).sum();
-            assert_eq!(linked, inner_sides, "{shape:?}");
+            assert_eq!(linked, inner_sides, "{division:?}");
             for (i, row) in table.iter().enumerate() {
                 for other in row {
                     assert!(table[usize::from(*other)].contains(&(i as u16)));

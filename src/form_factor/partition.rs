@@ -142,10 +142,10 @@ impl Pairing<'_> {
                             pending.push((cell, parts.sights));
                             continue;
                         }
-                        // The finer estimate is at hand, and a third of the difference is left of its second-order error.
                         let change = parts.contribution - leaf.contribution;
+                        let beyond = self.source.extrapolation(cell);
                         leaf.contribution =
-                            (leaf.contribution + change * (4.0 / 3.0)).max(Spectrum::ZERO);
+                            (leaf.contribution + change * beyond).max(Spectrum::ZERO);
                     }
                 }
                 leaves.push(leaf);

@@ -1,6 +1,7 @@
 //! A shooting patch as a pyramid of cells, each split into four.
 
 use super::cell::{Cell, SourceShape};
+use super::division::Division;
 use super::neighbours::Neighbours;
 use super::siblings::Siblings;
 use crate::radiometry::Spectrum;
@@ -43,7 +44,7 @@ impl Map {
 /// A shooting patch: the pyramid of its cells with the radiosity that each has to give.
 #[derive(Debug, Clone)]
 pub struct Source {
-    shape: SourceShape,
+    division: Division,
     normal: DVec3,
     levels: u32,
     neighbours: &'static [Neighbours],
@@ -58,15 +59,12 @@ pub struct Source {
 impl Source {
     /// The pyramid over a planar convex polygon of three or four corners, counter-clockwise seen from its radiating side.
     ///
-    /// `finest` holds the mean unshot radiosity of each cell of the deepest level, `4^levels` of them in order; a coarser
+    /// `finest` holds the mean unshot radiosity of each cell of the deepest level, `4^levels` of them in the order of its [`Division`]; a coarser
     /// cell has the area-weighted mean of its children, so that the power is the same on every level.
     pub fn new(corners: &[DVec3], normal: DVec3, levels: u32, finest: &[Spectrum]) -> Self {
         assert!((1..=DEEPEST).contains(&levels) && finest.len() == 1 << (2 * levels));
-        let shape = if corners.len() == 3 {
-            SourceShape::Triangle
-        } else {
-            SourceShape::Quad
-        };
+        let division = Division::of(corners);
+        let shape = division.shape;
         let root = [
             corners[0],
             corners[1],
@@ -74,9 +72,11 @@ impl Source {
             *corners.get(3).unwrap_or(&corners[0]),
         ];
         let mut cells = vec![Cell::new(root, shape)];
-        for parent in 0..level_start(levels) {
-            for child in cells[parent].children() {
-                cells.push(Cell::new(child, shape));
+        for level in 0..levels {
+            for parent in level_start(level)..level_start(level + 1) {
+                for child in cells[parent].children(division, level) {
+                    cells.push(Cell::new(child, shape));
+                }
             }
         }
         for (cell, radiosity) in cells[level_start(levels)..].iter_mut().zip(finest) {
@@ -100,10 +100,10 @@ impl Source {
         }
         let families = cells[1..].chunks_exact(4);
         Self {
-            shape,
+            division,
             normal,
             levels,
-            neighbours: shape.neighbours(),
+            neighbours: division.neighbours(),
             parts: families.map(Siblings::new).collect(),
             maps: cells.iter().map(Map::new).collect(),
             cells,
@@ -147,16 +147,26 @@ impl Source {
     /// The point at (s, t) of a cell, as [`Cell::at`] has it.
     #[inline(always)]
     pub(super) fn point_at(&self, index: CellIndex, s: f32, t: f32) -> Vec3 {
-        let (s, t) = self.shape.folded(s, t);
+        let (s, t) = self.division.shape.folded(s, t);
         let map = &self.maps[index as usize];
         (map.origin + map.along_s * s + (map.along_t + map.twist * s) * t).into()
     }
 
     /// Radiosity at the point (s, t) of a cell, to the resolution of the deepest level.
     pub(super) fn radiosity_at(&self, mut index: CellIndex, s: f32, t: f32) -> Spectrum {
-        let (mut s, mut t) = self.shape.folded(s, t);
+        let (mut s, mut t) = self.division.shape.folded(s, t);
         while self.has_children(index) {
-            let (child, s2, t2) = match self.shape {
+            let (child, s2, t2) = match self.division.shape {
+                SourceShape::Quad if self.is_sliced(index) => {
+                    let along = if self.division.upwards {
+                        &mut t
+                    } else {
+                        &mut s
+                    };
+                    let slice = (*along * 4.0).floor().min(3.0);
+                    *along = *along * 4.0 - slice;
+                    (slice as CellIndex, s, t)
+                }
                 SourceShape::Quad => {
                     let (right, upper) = (s >= 0.5, t >= 0.5);
                     let child = [[0, 3], [1, 2]][usize::from(right)][usize::from(upper)];
@@ -180,6 +190,23 @@ impl Source {
     #[inline(always)]
     pub(super) fn has_children(&self, index: CellIndex) -> bool {
         (index as usize) < level_start(self.levels)
+    }
+
+    /// Whether the children of a cell are slices.
+    #[inline(always)]
+    pub(super) fn is_sliced(&self, index: CellIndex) -> bool {
+        (index as usize) < level_start(self.division.sliced)
+    }
+
+    /// How much of the difference that its parts make to a cell is its error, as that is of second order: of parts half as long a third is left, of slices a
+    /// fifteenth.
+    #[inline(always)]
+    pub(super) fn extrapolation(&self, index: CellIndex) -> f32 {
+        if self.is_sliced(index) {
+            16.0 / 15.0
+        } else {
+            4.0 / 3.0
+        }
     }
 
     /// The cells of the same level across each side.
@@ -231,7 +258,13 @@ mod tests {
     #[test]
     fn single_precision_aims_at_the_same_points() {
         let [a, b, c, d] = square();
-        for corners in [&[a, b, c, d][..], &[a, b, c + DVec3::X, d], &[a, b, c]] {
+        let long = [a, b + 9.0 * DVec3::X, c + 9.0 * DVec3::X, d];
+        for corners in [
+            &long,
+            &[a, b, c, d][..],
+            &[a, b, c + DVec3::X, d],
+            &[a, b, c],
+        ] {
             let source = Source::new(corners, DVec3::Z, 2, &[Spectrum::ONE; 16]);
             for index in 0..level_start(3) as CellIndex {
                 for (s, t) in [(0.1_f32, 0.2), (0.9, 0.3), (0.4, 0.9)] {

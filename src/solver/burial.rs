@@ -6,8 +6,15 @@ use crate::mesh::Mesh;
 use crate::visibility::{Ray, Visibility};
 use rayon::prelude::*;
 
-/// Rays that must all end on dark backs.
+/// Rays that must all end on dark backs, spread by the cosine …
 const RAYS: u32 = 16;
+
+/// … and as many that graze: above a lamp that hangs below a ceiling nearly all there is to see is its dark back, but it is no solid.
+const GRAZING: u32 = 16;
+
+/// Tangents of their heights above the horizon: the first, and each next one over the one before.
+const HEIGHT: f64 = 0.15;
+const LOWER: f64 = 0.8;
 
 /// Whether each vertex from `first` on is buried. One ray each; the rest only for those whose first ray ends on a dark back.
 pub(super) fn buried(
@@ -34,7 +41,7 @@ pub(super) fn buried(
                 .map(|(v, _)| *v)
                 .collect();
             let mut confirmed =
-                sees_dark(mesh, visibility, backing, &suspects, 1..RAYS).into_iter();
+                sees_dark(mesh, visibility, backing, &suspects, 1..RAYS + GRAZING).into_iter();
             dark.iter_mut()
                 .filter(|dark| **dark)
                 .for_each(|dark| *dark = confirmed.next() == Some(true));
@@ -49,6 +56,15 @@ pub(super) fn buried(
         mesh.share(&mut buried, |corners| corners.iter().all(|buried| *buried));
     }
     buried
+}
+
+/// How far a ray is from the normal.
+fn squared_sine(ray: u32) -> f64 {
+    if ray < RAYS {
+        return (f64::from(ray) + 0.5) / f64::from(RAYS);
+    }
+    let tangent = HEIGHT * LOWER.powi((ray - RAYS) as i32);
+    1.0 / (1.0 + tangent * tangent)
 }
 
 /// For each vertex, whether all of its rays with the given numbers end on sides that do not radiate.
@@ -69,7 +85,7 @@ fn sees_dark(
                 // Even in azimuth and height, turned at random from vertex to vertex.
                 let [s, t] = jitter(*vertex, 0x6275_7269);
                 let spread = [
-                    (f64::from(ray) + 0.5) / f64::from(RAYS),
+                    squared_sine(ray),
                     (f64::from(ray) * 0.618_034 + s + t).fract(),
                 ];
                 Ray {

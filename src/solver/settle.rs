@@ -18,6 +18,9 @@ use rayon::prelude::*;
 /// How much the ratio of a bounce to the one before it still grows, in units of how much it has grown last.
 const STILL_TO_GROW: f32 = 1.5;
 
+/// A ratio that differs from the one before it by more than this part of it is of no series that has settled.
+const MOST_CHANGE: f32 = 0.25;
+
 impl Solver<'_> {
     /// What is reflected sets out once more, with what is emitted if the direct light is not known.
     pub(super) fn begin_gathering(&mut self, bounce: Option<Bounce>) {
@@ -35,14 +38,19 @@ impl Solver<'_> {
 
     /// How many times what is unshot is still to come: λ + λ² + … = λ / (1 - λ), were all that follow like a bounce that leaves λ times
     /// what it shot. The first ones leave less than those after them, as what is bright for its neighbourhood goes first; the
-    /// ratios approach that of what lasts longest like a geometric series.
+    /// ratios approach that of what lasts longest like a geometric series. Where they jump, light goes to and fro, as between a floor in the open
+    /// of which little falls on a canopy and the canopy of which much falls on the floor: what lasts is the mean of both ways.
     fn prospect(&self, bounce: Option<Bounce>) -> Spectrum {
         let Some(bounce) = bounce else {
             return Spectrum::ZERO;
         };
         let ratio = bounce.ratio_to(self.unshot());
-        let growth = bounce.ratio.map_or(Spectrum::ZERO, |before| ratio - before);
-        let ratio = (ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO))
+        let before = bounce.ratio.unwrap_or(ratio);
+        let growth = ratio - before;
+        let is_settled = growth.abs().cmple(MOST_CHANGE * ratio);
+        let still_growing = ratio + STILL_TO_GROW * growth.max(Spectrum::ZERO);
+        let mean = (ratio * before).powf(0.5);
+        let ratio = Spectrum::select(is_settled, still_growing, mean)
             .min(Spectrum::splat(MOST_RATIO as f32));
         ratio / (Spectrum::ONE - ratio)
     }

@@ -3,7 +3,7 @@
 use super::light::{Light, Sign};
 use super::options::{Options, Shooting};
 use super::run::Solver;
-use crate::form_factor::{Source, SourceShape, SourceThresholds};
+use crate::form_factor::{Division, Source, SourceShape, SourceThresholds};
 use crate::geometry::polygon::vector_area;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::{Power, Spectrum};
@@ -28,6 +28,10 @@ pub(super) fn source_from(mesh: &Mesh, patch: usize, cells: &[Spectrum]) -> Sour
     let levels = cells.len().ilog2() / 2;
     Source::new(of.corners(), of.normal, levels, cells)
 }
+
+/// Cells are looked at in parts as small as elements, but in no more than this many halvings: on a large floor that has a single lamp all light may be
+/// in a few small elements.
+const FINEST: u32 = 8;
 
 /// A triangle or parallelogram of coordinates on a patch; a triangle repeats its first corner.
 pub(super) type Quad = [[f64; 2]; 4];
@@ -65,8 +69,8 @@ fn cells_on(
     if shooting == Shooting::Mean {
         return vec![mean_of(mesh, light, shooter).as_vec3(); count];
     }
-    let triangle = mesh.patches.at(shooter.0).is_triangle();
-    means_on(mesh, light, shooter, &cells_at(triangle, levels))
+    let division = Division::of(mesh.patches.at(shooter.0).corners());
+    means_on(mesh, light, shooter, &cells_at(division, levels))
 }
 
 /// Mean unshot radiosity of a patch, buried parts included.
@@ -92,7 +96,7 @@ pub(super) fn means_on(
     let mut means: Vec<Spectrum> = cells
         .par_iter()
         .with_min_len(64)
-        .map(|cell| cell_mean(mesh, patch, cell, &radiosity, 2))
+        .map(|cell| cell_mean(mesh, patch, cell, &radiosity, FINEST))
         .collect();
     let weighted = means
         .iter()
@@ -110,8 +114,13 @@ pub(super) fn means_on(
 }
 
 /// The cells of a level, each by its three or four corners in the coordinates of the patch.
-pub(super) fn cells_at(triangle: bool, levels: u32) -> Vec<Quad> {
-    subdivide(vec![root(triangle)], triangle, levels)
+pub(super) fn cells_at(division: Division, levels: u32) -> Vec<Quad> {
+    let mut cells = vec![root(division.shape() == SourceShape::Triangle)];
+    for level in 0..levels {
+        let split = |cell: &Quad| division.children(level, *cell, half, |[a, _, c, _]| half(a, c));
+        cells = cells.iter().flat_map(split).collect();
+    }
+    cells
 }
 
 /// The cells of a quad in columns and rows.
@@ -135,23 +144,16 @@ fn root(triangle: bool) -> Quad {
     }
 }
 
-fn subdivide(mut cells: Vec<Quad>, triangle: bool, levels: u32) -> Vec<Quad> {
-    for _ in 0..levels {
-        cells = cells
-            .iter()
-            .flat_map(|cell| parts(cell, triangle))
-            .collect();
-    }
-    cells
+fn half(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+    [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]
 }
 
-/// The four parts of a cell, in the order of the pyramid.
+/// The four quarters of a cell, in the order of the pyramid.
 pub(super) fn parts(cell: &Quad, triangle: bool) -> [Quad; 4] {
     let shape = match triangle {
         true => SourceShape::Triangle,
         false => SourceShape::Quad,
     };
-    let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
     shape.children(*cell, half, |[a, _, c, _]| half(a, c))
 }
 

@@ -8,7 +8,7 @@ use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::Shooter;
 use super::source::{Quad, cell_mean, cells_at, cells_in, means_on, parts};
-use crate::form_factor::{Clusters, DEEPEST, Tile, ToleranceScale};
+use crate::form_factor::{Clusters, DEEPEST, Division, SourceShape, Tile, ToleranceScale};
 use crate::geometry::polygon::diameter;
 use crate::mesh::{Mesh, Patch};
 use crate::radiometry::Spectrum;
@@ -207,7 +207,7 @@ impl Cut {
     /// The cells before any is cut into four.
     fn whole_cells(self) -> Vec<Quad> {
         match self {
-            Self::Levels(levels) => cells_at(true, levels.into()),
+            Self::Levels(levels) => cells_at(Division::even(SourceShape::Triangle), levels.into()),
             Self::Grid(columns, rows) => cells_in(columns.into(), rows.into()),
         }
     }

@@ -4,10 +4,12 @@
 mod common;
 
 mod bright;
+mod canopy;
 mod clusters;
 mod conforming;
 mod contact;
 mod corner;
+mod ducts;
 mod energy;
 mod estimate;
 mod exact_floor;
@@ -20,6 +22,7 @@ mod relight;
 mod resume;
 mod small_objects;
 mod stopping;
+mod suspended;
 mod threads;
 mod variants;
 

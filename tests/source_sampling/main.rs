@@ -3,4 +3,5 @@
 
 mod blocked;
 mod setup;
+mod strips;
 mod unhindered;
