@@ -93,10 +93,11 @@ impl Enclosure {
         }
         let facets = std::mem::take(&mut rows.facets);
         let lengths = pool.install(|| row_lengths(&facets, &rows.of_row));
-        let count = rows.list.len();
+        let count = facets.len();
         let numbered = lengths.iter().zip(&rows.areas).zip(&rows.of_row);
         let budgets = numbered.flat_map(|((length, area), facets)| {
-            let budget = Budget::new(options.tolerance, *area, *length, count);
+            let pairs = facets.len() * count;
+            let budget = Budget::new(options.tolerance, *area, *length, pairs);
             std::iter::repeat_n(budget, facets.len())
         });
         let budgets = budgets.collect();

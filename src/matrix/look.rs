@@ -7,6 +7,7 @@ use super::occluder::Between;
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
 use super::visible::{Cutter, Seen, Sight, TooIntricate};
+use super::zones::zones;
 use glam::DVec3;
 
 /// Corners are looked from a little inside, since on a common edge a form factor has no value.
@@ -120,6 +121,13 @@ impl<'a> Eyes<'a> {
         }
     }
 
+    /// The tiles of the facet that looks, divided where what their points see has kinks.
+    pub fn zones(&mut self, view: View<'_>) -> Vec<Convex> {
+        let zones = zones(&mut self.cutter, view.outer, view.sight(self.space));
+        let tiles = zones.iter().flat_map(Convex::tiles);
+        tiles.collect()
+    }
+
     /// Looks from the four points of the product rule on every tile.
     pub fn look_all(&mut self, view: View<'_>) -> Result<Sums, TooIntricate> {
         let tiles = view.outer.shape.tiles();
@@ -195,9 +203,19 @@ impl<'a> Eyes<'a> {
     /// Whether a facet is hidden from all of a few points of the other, which is asked before anything else since it needs
     /// no form factor.
     pub fn is_hidden(&mut self, view: View<'_>) -> bool {
+        let shape = view.outer.shape;
         self.places.clear();
-        for tile in view.outer.shape.tiles() {
+        for tile in shape.tiles() {
             each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
+        }
+        self.all_hidden(view)
+    }
+
+    /// The same from every tile of many.
+    pub fn is_hidden_from(&mut self, view: View<'_>, tiles: &[Convex]) -> bool {
+        self.places.clear();
+        for tile in tiles {
+            each_node(tile, 2, |eye, weight| self.places.push((eye, weight)));
         }
         self.all_hidden(view)
     }

@@ -9,7 +9,7 @@
 //! 2. `join`: neighbours in one plane become one `occluder`, and convex `body`s hide by their `silhouette`; `tree` finds for a pair of facets those that may come between.
 //! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
 //!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
-//!    agree (`hidden`), or rays are traced where there is too much to cut (`rays`).
+//!    agree (`hidden`), in the end over the `zones` between the lines where what points see has kinks, or rays are traced where there is too much to cut (`rays`).
 //! 4. `work` does so for all pairs of rows, and `again` once more for the rows whose sums tell that an entry is off.
 //! 5. `enforce` closes the balance on demand, `balance` solves for radiosity.
 //!
@@ -39,6 +39,7 @@ mod options;
 mod overlap;
 mod pair;
 mod rays;
+mod refined;
 mod rows;
 mod silhouette;
 mod solid;
@@ -47,6 +48,7 @@ mod tree;
 mod unhindered;
 mod visible;
 mod work;
+mod zones;
 
 pub use balance::Balance;
 pub use certificate::{Certificate, Tally};

@@ -91,6 +91,19 @@ impl Occluder {
         !self.members.is_empty()
     }
 
+    /// The planes of faces that run through a facet.
+    pub fn face_planes<'a>(&'a self, facet: &'a Facet) -> impl Iterator<Item = Plane> + 'a {
+        let count = if self.is_body() { self.faces.len() } else { 1 };
+        self.faces[..count].iter().filter_map(|face| {
+            let (low, high) = facet.range_over(face.normal, face.offset);
+            (low < -face.thickness && high > face.thickness).then_some(Plane {
+                normal: face.normal,
+                offset: face.offset,
+                reach: face.thickness,
+            })
+        })
+    }
+
     /// Lets points up to this far from the plane lie on the surface.
     pub fn thicken(&mut self, thickness: f64) {
         for face in &mut self.faces {

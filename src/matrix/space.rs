@@ -73,7 +73,7 @@ impl Space {
     }
 }
 
-/// The errors that the entries of a row may have: half of the tolerance in proportion to them, half of it equal for all, so that the
+/// The errors that the pairs of facets of a row may have: half of the tolerance in proportion to what they exchange, half of it equal for all, so that the
 /// root of the sum of their squares comes to the tolerance at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Budget {
@@ -86,12 +86,12 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// For a row of the given area and length (see [`row_lengths`]), one of `count`.
-    pub fn new(tolerance: f64, area: f64, length: f64, count: usize) -> Self {
+    /// For a row of the given area and length (see [`row_lengths`]) that so many pairs of facets make up.
+    pub fn new(tolerance: f64, area: f64, length: f64, pairs: usize) -> Self {
         let relative = tolerance / length.max(f64::MIN_POSITIVE);
         Self {
             relative: 0.5 * relative,
-            absolute: 0.5 * tolerance * area / (count as f64).sqrt(),
+            absolute: 0.5 * tolerance * area / (pairs as f64).sqrt(),
             accuracy: (UNHINDERED * relative).min(LEAST_ACCURATE_UNHINDERED),
         }
     }

@@ -100,6 +100,22 @@ impl Cutter {
         false
     }
 
+    /// The planes through a facet of the shadows that one occluder casts on it from several points; `None` if some casts none.
+    pub fn shadow_from_all(
+        &mut self,
+        eyes: &[DVec3],
+        sight: Sight<'_>,
+        between: &Between,
+    ) -> Option<&[Plane]> {
+        self.planes.clear();
+        for eye in eyes {
+            if let Shadow::Misses = self.shadow(*eye, sight, between) {
+                return None;
+            }
+        }
+        Some(&self.planes)
+    }
+
     /// Appends the planes of a shadow that run through the facet.
     fn shadow(&mut self, eye: DVec3, sight: Sight<'_>, between: &Between) -> Shadow {
         let begin = self.planes.len();
@@ -170,10 +186,11 @@ fn subtract(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntr
             continue;
         }
         let (fragment, before) = (fragments[k], fragments.len());
-        if cut_out(fragment, planes, fragments)? == Left::All {
-            fragments.truncate(before);
-        } else {
-            fragments.swap_remove(k);
+        match cut_out(fragment, planes, fragments)? {
+            Left::All => fragments.truncate(before),
+            Left::Within(_) => {
+                fragments.swap_remove(k);
+            }
         }
     }
     if fragments.len() > MOST_FRAGMENTS {
@@ -181,6 +198,18 @@ fn subtract(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntr
     } else {
         Ok(())
     }
+}
+
+/// Divides all fragments into what lies within all half-spaces and what does not.
+pub(super) fn split(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntricate> {
+    for k in 0..fragments.len() {
+        let (fragment, before) = (fragments[k], fragments.len());
+        match cut_out(fragment, planes, fragments)? {
+            Left::All => fragments.truncate(before),
+            Left::Within(part) => fragments[k] = part,
+        }
+    }
+    Ok(())
 }
 
 /// Whether a fragment lies outside of one half-space.
@@ -194,11 +223,11 @@ fn misses(fragment: &Convex, planes: &[Plane]) -> bool {
     planes.iter().any(outside)
 }
 
-/// How much of a fragment a shadow leaves.
-#[derive(PartialEq)]
+/// What of a fragment is left where a shadow has been cut out.
 enum Left {
     All,
-    Less,
+    /// All but this part.
+    Within(Convex),
 }
 
 /// Appends the parts of a fragment outside of any half-space.
@@ -228,7 +257,7 @@ fn cut_out(
         parts.push(halves.below);
         rest = halves.above;
     }
-    Ok(Left::Less)
+    Ok(Left::Within(rest))
 }
 
 #[cfg(test)]

@@ -12,3 +12,4 @@ mod invariants;
 mod obstructed;
 mod published;
 mod setup;
+mod slits;
