@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn cells_are_no_strips() {
-        for i in 0..100 {
+        for i in 0..80 {
             let ratio = 1.1_f64.powi(i);
             let [wide, high] = [divided(ratio, 1.0), divided(1.0, ratio)];
             let cell = ratio / 4_f64.powi(wide.sliced as i32);

@@ -186,11 +186,10 @@ fn subtract(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntr
             continue;
         }
         let (fragment, before) = (fragments[k], fragments.len());
-        match cut_out(fragment, planes, fragments)? {
-            Left::All => fragments.truncate(before),
-            Left::Within(_) => {
-                fragments.swap_remove(k);
-            }
+        if cut_out(fragment, planes, fragments)?.is_some() {
+            fragments.swap_remove(k);
+        } else {
+            fragments.truncate(before);
         }
     }
     if fragments.len() > MOST_FRAGMENTS {
@@ -205,8 +204,8 @@ pub(super) fn split(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(),
     for k in 0..fragments.len() {
         let (fragment, before) = (fragments[k], fragments.len());
         match cut_out(fragment, planes, fragments)? {
-            Left::All => fragments.truncate(before),
-            Left::Within(part) => fragments[k] = part,
+            None => fragments.truncate(before),
+            Some(within) => fragments[k] = within,
         }
     }
     Ok(())
@@ -223,19 +222,12 @@ fn misses(fragment: &Convex, planes: &[Plane]) -> bool {
     planes.iter().any(outside)
 }
 
-/// What of a fragment is left where a shadow has been cut out.
-enum Left {
-    All,
-    /// All but this part.
-    Within(Convex),
-}
-
-/// Appends the parts of a fragment outside of any half-space.
+/// Appends the parts of a fragment outside of any half-space, and returns what lies within all; if nothing does, the parts are of no use.
 fn cut_out(
     mut rest: Convex,
     planes: &[Plane],
     parts: &mut Vec<Convex>,
-) -> Result<Left, TooIntricate> {
+) -> Result<Option<Convex>, TooIntricate> {
     let mut heights = [0.0; Convex::MOST];
     for plane in planes {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -245,7 +237,7 @@ fn cut_out(
             high = high.max(*slot);
         }
         if high <= plane.reach {
-            return Ok(Left::All);
+            return Ok(None);
         }
         if low >= -plane.reach {
             continue;
@@ -257,7 +249,7 @@ fn cut_out(
         parts.push(halves.below);
         rest = halves.above;
     }
-    Ok(Left::Within(rest))
+    Ok(Some(rest))
 }
 
 #[cfg(test)]
