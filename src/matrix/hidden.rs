@@ -4,8 +4,9 @@
 //! point is left. It is smooth from the side that is farther from what lies between and nearly a step from the nearer one;
 //! where the two sides agree, both are right. Where they do not, the smoother one is refined until it is stable; if that is still not
 //! what the other says, as happens where all points of one side miss a sliver, the other is refined too. Numbers of points that agree by
-//! accident are found out by a third that does not; where row sums tell that it went wrong all the same ([`super::again`]), both
-//! sides are refined in any case.
+//! accident are found out by a third that does not. Where the refined sides differ, or next to nothing is visible, both are divided
+//! into zones ([`super::zones`]) and refined further; so are they where row sums tell that it went wrong all the same
+//! ([`super::again`]).
 //!
 //! What the pair would exchange unhindered is known beforehand. Where the same points come to something else, as they do near a
 //! common edge, the difference is visible as far as the tiles are that caused it.
@@ -197,10 +198,11 @@ impl<'a> Looker<'a> {
     /// Looks from few points of both sides, refines the smoother one where that is not enough, and the other where they differ.
     fn integrate(&mut self, views: [View<'_>; 2], tolerance: f64) -> Result<Share, TooIntricate> {
         let [view, back] = views;
-        if self.eyes.is_hidden(view) && self.eyes.is_hidden(back) && self.eyes.corners_hidden(view)
-        {
-            let zones = self.eyes.zones(view);
-            if self.eyes.is_hidden_from(view, &zones) {
+        let sides = [view, back];
+        let is_hidden = |it: &View<'_>| self.eyes.is_hidden(*it, it.outer.shape.tiles());
+        if sides.iter().all(is_hidden) && self.eyes.corners_hidden(view) {
+            let zones = self.eyes.zones(view).into_iter();
+            if self.eyes.is_hidden(view, zones) {
                 return Ok(Share::of((0.0, 0.0), tolerance));
             }
         }

@@ -200,22 +200,12 @@ impl<'a> Eyes<'a> {
         Ok(sum / tile.corners().len() as f64)
     }
 
-    /// Whether a facet is hidden from all of a few points of the other, which is asked before anything else since it needs
-    /// no form factor.
-    pub fn is_hidden(&mut self, view: View<'_>) -> bool {
-        let shape = view.outer.shape;
-        self.places.clear();
-        for tile in shape.tiles() {
-            each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
-        }
-        self.all_hidden(view)
-    }
-
-    /// The same from every tile of many.
-    pub fn is_hidden_from(&mut self, view: View<'_>, tiles: &[Convex]) -> bool {
+    /// Whether a facet is hidden from four points of each of some tiles of the other, which is asked before anything else since it
+    /// needs no form factor.
+    pub fn is_hidden(&mut self, view: View<'_>, tiles: impl Iterator<Item = Convex>) -> bool {
         self.places.clear();
         for tile in tiles {
-            each_node(tile, 2, |eye, weight| self.places.push((eye, weight)));
+            each_node(&tile, 2, |eye, weight| self.places.push((eye, weight)));
         }
         self.all_hidden(view)
     }

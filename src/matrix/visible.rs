@@ -222,7 +222,7 @@ fn misses(fragment: &Convex, planes: &[Plane]) -> bool {
     planes.iter().any(outside)
 }
 
-/// Appends the parts of a fragment outside of any half-space, and returns what lies within all; if nothing does, the parts are of no use.
+/// Appends the parts of a fragment outside of any half-space, and returns the part within all; `None` if there is none.
 fn cut_out(
     mut rest: Convex,
     planes: &[Plane],

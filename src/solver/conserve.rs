@@ -11,7 +11,7 @@ use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::Shooter;
 use super::sums::in_order;
-use super::volley::{Giver, gathered};
+use super::volley::{Giver, add, gathered};
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
@@ -185,29 +185,18 @@ impl Solver<'_> {
 
     /// The light of the emitters alone, gathered.
     fn direct(&mut self) -> (Vec<Spectrum>, Lost) {
-        let mesh = &self.mesh;
-        let emitters = Light::to_send(mesh, mesh.by_vertex(Spectrum::ZERO));
-        let giver = |patch: usize| Giver {
-            patch,
-            sign: Sign::Positive,
-            power: emitters
-                .unshot_power(mesh, patch, Sign::Positive)
-                .element_sum(),
-        };
-        let givers = (0..mesh.patches.len()).map(giver);
-        let givers: Vec<Giver> = givers.filter(|of| of.power > 0.0).collect();
-        let (mut direct, mut lost, mut rays) = (mesh.by_vertex(Spectrum::ZERO), Lost::default(), 0);
-        for givers in givers.chunks(gathered(mesh)) {
-            for given in self.given(givers, &emitters) {
-                let light = direct.par_iter_mut().zip(&given.irradiance);
-                light
-                    .with_min_len(4096)
-                    .for_each(|(sum, given)| *sum += *given);
-                lost += given.lost;
-                rays += given.rays;
+        let dark = || self.mesh.by_vertex(Spectrum::ZERO);
+        let emitters = Light::to_send(&self.mesh, dark());
+        let givers: Vec<Giver> = self.givers(&emitters, 0).collect();
+        let (mut direct, mut lost) = (dark(), Lost::default());
+        for givers in givers.chunks(gathered(&self.mesh)) {
+            let given = self.given(givers, &emitters);
+            add(&given, &mut direct);
+            for of in given {
+                self.course.rays += of.rays;
+                lost += of.lost;
             }
         }
-        self.course.rays += rays;
         (direct, lost)
     }
 

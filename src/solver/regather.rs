@@ -7,17 +7,14 @@
 use super::audit::Span;
 use super::course::{Gathering, Stage};
 use super::escape::Lost;
-use super::light::{Light, Sign};
+use super::light::Light;
 use super::run::Solver;
-use super::volley::{Giver, gathered};
+use super::volley::{Giver, add, gathered};
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
 /// Of patches that send more than this part of what is emitted, it is known how much of that arrives or escapes.
 const MUCH: f64 = 1e-3;
-
-/// Vertices at which the light of some patches is added up by one thread.
-const SLICE: usize = 1024;
 
 impl Solver<'_> {
     /// Nothing gathered yet.
@@ -38,18 +35,8 @@ impl Solver<'_> {
             Some(whole) => whole,
             None => self.whole(so_far.ambient),
         };
-        let giver = |patch: usize| Giver {
-            patch,
-            sign: Sign::Positive,
-            power: whole
-                .unshot_power(&self.mesh, patch, Sign::Positive)
-                .element_sum(),
-        };
-        let next: Vec<Giver> = (so_far.next as usize..self.mesh.patches.len())
-            .map(giver)
-            .filter(|giver| giver.power > 0.0)
-            .take(gathered(&self.mesh))
-            .collect();
+        let givers = self.givers(&whole, so_far.next as usize);
+        let next: Vec<Giver> = givers.take(gathered(&self.mesh)).collect();
         let Some(last) = next.last() else {
             let Gathering {
                 irradiance,
@@ -61,14 +48,7 @@ impl Solver<'_> {
         };
         let much = MUCH * self.emitted().element_sum();
         let given = self.given(&next, &whole);
-        let light = so_far.irradiance.par_chunks_mut(SLICE).enumerate();
-        light.for_each(|(slice, light)| {
-            for of in &given {
-                for (sum, irradiance) in light.iter_mut().zip(&of.irradiance[slice * SLICE..]) {
-                    *sum += *irradiance;
-                }
-            }
-        });
+        add(&given, &mut so_far.irradiance);
         let found = next.par_iter().zip(&given).with_max_len(1);
         let found = found
             .filter(|(giver, _)| giver.power > much)

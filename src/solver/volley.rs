@@ -21,6 +21,9 @@ const GATHERED: usize = 32;
 /// … unless together they would hold more values at vertices.
 const VALUES: usize = 1 << 22;
 
+/// Vertices at which the light of some patches is added up by one thread.
+const SLICE: usize = 1024;
+
 /// Patches that have this part of the strongest one's power shoot with it.
 const ALONGSIDE: f64 = 0.5;
 
@@ -43,6 +46,18 @@ pub(super) struct Given {
 }
 
 impl Solver<'_> {
+    /// The patches from number `first` on that have any light in `light` to give.
+    pub(super) fn givers(&self, light: &Light, first: usize) -> impl Iterator<Item = Giver> {
+        let sign = Sign::Positive;
+        let giver = move |patch: usize| Giver {
+            patch,
+            sign,
+            power: light.unshot_power(&self.mesh, patch, sign).element_sum(),
+        };
+        let givers = (first..self.mesh.patches.len()).map(giver);
+        givers.filter(|giver| giver.power > 0.0)
+    }
+
     /// What each of `givers` has of `light` and gives to all patches.
     pub(super) fn given(&self, givers: &[Giver], light: &Light) -> Vec<Given> {
         let giver = givers.par_iter().with_max_len(1);
@@ -121,6 +136,18 @@ impl Solver<'_> {
         }
         self.course.shots += givers.len() as u64;
     }
+}
+
+/// Adds what is `given` to what has arrived at each vertex.
+pub(super) fn add(given: &[Given], irradiance: &mut [Spectrum]) {
+    let light = irradiance.par_chunks_mut(SLICE).enumerate();
+    light.for_each(|(slice, light)| {
+        for of in given {
+            for (sum, irradiance) in light.iter_mut().zip(&of.irradiance[slice * SLICE..]) {
+                *sum += *irradiance;
+            }
+        }
+    });
 }
 
 /// The strongest of `powers`, by patch and sign (the first of equals), and then those nearly as strong, `most` at the most.
