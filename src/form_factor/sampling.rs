@@ -145,6 +145,26 @@ impl Sampler<'_> {
         scratch: &mut Scratch,
         gathers: &mut [Gather],
     ) -> u64 {
+        let mut rays = self.gather_from(source, receivers, scratch, gathers);
+        for core in source.cores() {
+            let mut more = vec![Gather::default(); receivers.len()];
+            rays += self.gather_from(core, receivers, scratch, &mut more);
+            for (gather, of_core) in gathers.iter_mut().zip(more) {
+                gather.irradiance += of_core.irradiance;
+                gather.unoccluded += of_core.unoccluded;
+            }
+        }
+        rays
+    }
+
+    /// The same of one pyramid.
+    fn gather_from(
+        &self,
+        source: &Source,
+        receivers: &[(Receiver, u32)],
+        scratch: &mut Scratch,
+        gathers: &mut [Gather],
+    ) -> u64 {
         let isa = scratch.isa;
         let most = receivers.len().max(scratch.leaves.len());
         scratch.leaves.resize_with(most, Vec::new);

@@ -54,6 +54,7 @@ pub struct Source {
     maps: Vec<Map>,
     /// Radiosity of the cells of the deepest level, close together in memory.
     finest: Vec<Spectrum>,
+    cores: Vec<Source>,
 }
 
 impl Source {
@@ -108,7 +109,18 @@ impl Source {
             maps: cells.iter().map(Map::new).collect(),
             cells,
             finest: finest.to_vec(),
+            cores: Vec::new(),
         }
+    }
+
+    /// The same patch with what some of its cells send on pyramids of their own; in this one, and in one another, they are dark.
+    pub fn with_cores(self, cores: Vec<Self>) -> Self {
+        Self { cores, ..self }
+    }
+
+    /// Cells that send so much that they have pyramids of their own.
+    pub(super) fn cores(&self) -> &[Self] {
+        &self.cores
     }
 
     /// Unit normal of the radiating side.
@@ -127,10 +139,10 @@ impl Source {
     }
 
     /// The cells of the deepest level with their radiosity times area, for drawing points in proportion to it.
-    pub fn finest(&self) -> impl ExactSizeIterator<Item = (&Cell, Spectrum)> + Clone {
-        self.cells[level_start(self.levels)..]
-            .iter()
-            .map(|c| (c, c.radiosity * c.area as f32))
+    pub fn finest(&self) -> impl Iterator<Item = (&Cell, Spectrum)> + Clone {
+        let pyramids = std::iter::once(self).chain(&self.cores);
+        let cells = pyramids.flat_map(|of| &of.cells[level_start(of.levels)..]);
+        cells.map(|c| (c, c.radiosity * c.area as f32))
     }
 
     #[inline(always)]
@@ -229,6 +241,11 @@ pub(super) const fn level_start(level: u32) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::form_factor::{
+        Formula, Gather, Receiver, Sampler, Scratch, SourceThresholds, ToleranceScale,
+    };
+    use crate::geometry::jitter;
+    use crate::visibility::{Obvhs, Triangles};
 
     fn square() -> [DVec3; 4] {
         [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y]
@@ -271,6 +288,69 @@ mod tests {
                     let at = source.cell(index).at(f64::from(s), f64::from(t));
                     assert!(source.point_at(index, s, t).distance(at.as_vec3()) < 1e-6);
                 }
+            }
+        }
+    }
+
+    /// Cells of a quad and of a triangle, the middle one among them.
+    #[test]
+    fn a_core_gives_what_its_cell_would() {
+        let [a, b, c, d] = square();
+        let facing_down = [a, d, c, b];
+        let blocker = Triangles {
+            vertices: [[0.0, 0.0, -0.01], [0.5, 0.0, -0.01], [0.0, 0.5, -0.01]]
+                .map(Vec3::from)
+                .to_vec(),
+            indices: vec![[0, 1, 2]],
+        };
+        let sampler = Sampler {
+            visibility: &Obvhs::new(&blocker).expect("one triangle is enough"),
+            extent: 2.0,
+            formula: Formula::Hybrid(5.0),
+            thresholds: SourceThresholds {
+                difference: 1e-4,
+                estimate: 1e-3,
+                raw: false,
+                scale: ToleranceScale {
+                    reference: 1.0,
+                    local_share: 0.0,
+                },
+            },
+        };
+        let receivers: Vec<(Receiver, u32)> = (0..50)
+            .map(|i| {
+                let [[x, y], [z, _]] = [0, 1].map(|k| jitter(i, k));
+                let receiver = Receiver {
+                    point: DVec3::new(x, y, -0.1 - z),
+                    normal: DVec3::Z,
+                    irradiance: 0.0,
+                };
+                (receiver, i)
+            })
+            .collect();
+        for corners in [&facing_down[..], &facing_down[..3]] {
+            for bright in 0..4 {
+                let mut finest = [Spectrum::ZERO; 64];
+                let dark = Source::new(corners, DVec3::NEG_Z, 3, &finest);
+                finest[16 * bright..][..16].fill(Spectrum::ONE);
+                let plain = Source::new(corners, DVec3::NEG_Z, 3, &finest);
+                let cell = dark.cell(1 + bright as CellIndex).outline();
+                let core = Source::new(cell, DVec3::NEG_Z, 2, &[Spectrum::ONE; 16]);
+                let cored = dark.clone().with_cores(vec![core]);
+                let power = |of: &Source| of.finest().map(|(_, power)| power.x).sum::<f32>();
+                assert!((power(&cored) / power(&plain) - 1.0).abs() < 1e-6);
+                let mut scratch = Scratch::default();
+                let mut received = |source: &Source| {
+                    let mut gathers = vec![Gather::default(); receivers.len()];
+                    sampler.gather(source, &receivers, &mut scratch, &mut gathers);
+                    let sum = |of: fn(&Gather) -> Spectrum| {
+                        gathers.iter().map(|gather| of(gather).x).sum::<f32>()
+                    };
+                    [sum(|g| g.unoccluded), sum(|g| g.irradiance)]
+                };
+                let ([all, seen], [expected, in_view]) = (received(&cored), received(&plain));
+                assert!((all / expected - 1.0).abs() < 1e-3, "{all} {expected}");
+                assert!((seen - in_view).abs() < 0.03 * all, "{seen} {in_view}");
             }
         }
     }

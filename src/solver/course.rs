@@ -7,10 +7,9 @@ use super::feelers::Feeler;
 use super::light::{Light, Sign};
 use super::observer::Phase;
 use super::shoot::Shooter;
-use super::source::source_from;
+use super::source::{self, source_from};
 use super::tiling;
 use super::wave::Wave;
-use crate::form_factor::DEEPEST;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use serde::{Deserialize, Serialize};
@@ -90,7 +89,7 @@ pub(super) struct Shot {
     pub sign: Sign,
     /// As a fraction of the emitted power.
     pub power: f64,
-    /// Unshot radiosity by cell of the deepest level, or by tile, as it was before the shot.
+    /// Unshot radiosity by cell, or by tile, as it was before the shot.
     pub cells: Vec<Spectrum>,
     /// Elements to be tested.
     pub candidates: Vec<u32>,
@@ -176,10 +175,9 @@ impl Course {
         let fits = match &self.stage {
             Stage::Shooting | Stage::Bounced(_) | Stage::Finished => true,
             Stage::Refining(shot) | Stage::Settling(shot) => {
-                let mut levels = 1..=DEEPEST;
                 let fits = match shot.shooter {
                     ALL => tiling::fits(mesh, &shot.cells),
-                    patch => patch < patches && levels.any(|l| shot.cells.len() == 1 << (2 * l)),
+                    patch => patch < patches && source::fits(mesh, patch as usize, &shot.cells),
                 };
                 fits && shot.candidates.iter().all(|e| *e < elements)
                     && shot.feelers.iter().all(|f| f.patch < patches)

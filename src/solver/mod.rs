@@ -8,6 +8,7 @@ mod audit;
 mod behind;
 mod bounce;
 mod burial;
+mod cells;
 mod check;
 mod conserve;
 mod course;

@@ -3,11 +3,12 @@
 //! A tile is even, and that is wrong for what is beside it: a pane that is bright at its rim and dark in the middle lights the pane behind it as
 //! if it were grey. So for the gathering tiles are cut into four, and these again, where what they send is uneven.
 
+use super::cells::{Quad, cells_at, cells_in, parts, root};
 use super::escape::Part;
 use super::light::{Light, Sign};
 use super::options::Options;
 use super::shoot::Shooter;
-use super::source::{Quad, cell_mean, cells_at, cells_in, means_on, parts};
+use super::source::{cell_mean, means_on};
 use crate::form_factor::{Clusters, DEEPEST, Division, SourceShape, Tile, ToleranceScale};
 use crate::geometry::polygon::diameter;
 use crate::mesh::{Mesh, Patch};
@@ -133,7 +134,7 @@ impl Tiling {
     pub fn unshot(&self, mesh: &Mesh, light: &Light, sign: Sign) -> Vec<Spectrum> {
         let of_patch = |patch: u32, cut: Cut| {
             let marks = self.uneven.get(&patch);
-            let means = means_on(mesh, light, (patch as usize, sign), &cut.cells(marks));
+            let means = means_on(mesh, light, (patch as usize, sign), cut.cells(marks));
             match marks {
                 Some(marks) => marked(marks, means),
                 None => means,
@@ -207,7 +208,10 @@ impl Cut {
     /// The cells before any is cut into four.
     fn whole_cells(self) -> Vec<Quad> {
         match self {
-            Self::Levels(levels) => cells_at(Division::even(SourceShape::Triangle), levels.into()),
+            Self::Levels(levels) => {
+                let even = Division::even(SourceShape::Triangle);
+                cells_at(root(true), even, levels.into())
+            }
             Self::Grid(columns, rows) => cells_in(columns.into(), rows.into()),
         }
     }
