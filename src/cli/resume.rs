@@ -5,7 +5,7 @@ use super::error::Code;
 use super::flags::SolveFlags;
 use super::memory::hold_less;
 use super::progress::catch_interrupts;
-use super::results::{CHECKPOINT, SOLUTION, inputs, spare};
+use super::results::{CHECKPOINT, SOLUTION, folder_of, inputs, spare};
 use super::say;
 use super::session::Session;
 use super::solve::{How, engine_of, prepare, warn_of_another_engine};
@@ -22,7 +22,7 @@ use std::time::Instant;
     mut_arg("engine", |engine| engine.help(ENGINE)),
 )]
 pub(super) struct Arguments {
-    /// Folder of a solve: goes on from its checkpoint if there is one, else from its solution
+    /// Folder of a solve: goes on from its checkpoint if there is one, else from its solution; or one of these files
     folder: PathBuf,
     /// The scene with other emitters, and the same in all else: only the difference is shot
     #[arg(long, value_name = "SCENE")]
@@ -47,7 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let solution = Solution::read(&latest(&arguments.folder)?)?;
     hold_less(solution.mesh.patches.len());
     let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
-    let output = arguments.output.as_ref().unwrap_or(&arguments.folder);
+    let output = arguments.output.clone();
+    let output = &output.unwrap_or_else(|| folder_of(&arguments.folder));
     let scenes = solution.report.scene_file.iter().chain(&arguments.scene);
     let files: Vec<PathBuf> = scenes.flat_map(|file| inputs(file)).collect();
     spare(&files, output, &arguments.how, &solution.cameras)?;
@@ -77,8 +78,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     session.complete(run, watching)
 }
 
-/// The checkpoint, or the solution where there is none.
+/// The checkpoint of a folder, or the solution where there is none; a file is what it is.
 fn latest(folder: &Path) -> Result<PathBuf, CliError> {
+    if folder.is_file() {
+        return Ok(folder.to_path_buf());
+    }
     let found = [CHECKPOINT, SOLUTION].map(|name| folder.join(name));
     found.into_iter().find(|path| path.is_file()).ok_or_else(|| {
         CliError::Input(format!(

@@ -5,6 +5,7 @@ use super::settings::{self, Settings, SidesRule, UpAxis};
 use super::text::{TextFile, quote};
 use super::warnings::Tally;
 use super::{NamedScene, Names, Scene, SceneError, cameras, duplicates, materials, sides, split};
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 const SCENE_FILE: &str = "scene.toml";
@@ -70,8 +71,11 @@ fn load(path: &Path, auto: SidesRule) -> Result<NamedScene, SceneError> {
         return load_toml(&scene, auto);
     }
     let expected = format!("a folder with a {SCENE_FILE}, a .toml, {ENDINGS} file");
-    if !path.exists() {
-        let found = "no such file or folder";
+    if let Err(reason) = path.metadata() {
+        let found = match reason.kind() {
+            ErrorKind::NotFound => "no such file or folder".into(),
+            _ => format!("what cannot be read ({reason})"),
+        };
         return Err(SceneError::new(path, None, found, expected));
     }
     if has_extension(path, "toml") {

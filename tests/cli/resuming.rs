@@ -117,9 +117,10 @@ fn a_report_repeats_its_solve_from_anywhere() {
 fn a_solution_goes_on_with_stricter_options_and_other_emitters() {
     let (folder, solved) = draft("cornell-box");
     let before = solution(&solved);
+    // Named by its file or by its folder.
     let resumed = run(&[&[
         "resume",
-        text(&solved),
+        text(&solved.join("solution.rad")),
         "--tolerance",
         "0.001",
         "--no-pictures",

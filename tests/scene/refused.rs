@@ -45,6 +45,18 @@ fn paths_that_are_no_scene() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn a_path_that_leads_nowhere_says_why() {
+    let files = Files::new(&[("here", "")]);
+    let link = files.0.path().join("round.obj");
+    std::os::unix::fs::symlink(&link, &link).expect("can be made");
+    let refusal = files.refusal("round.obj");
+    let found =
+        "round.obj: found what cannot be read (Too many levels of symbolic links (os error 40))";
+    assert!(refusal.starts_with(found), "{refusal}");
+}
+
 #[test]
 fn text_that_is_not_utf8() {
     let files = Files::new(&[
