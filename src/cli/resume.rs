@@ -44,7 +44,8 @@ const ENGINE: &str =
 pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     let started = Instant::now();
     let watching = arguments.how.begin()?;
-    let solution = Solution::read(&latest(&arguments.folder)?)?;
+    let file = latest(&arguments.folder)?;
+    let solution = Solution::read(&file)?;
     hold_less(solution.mesh.patches.len());
     let scene = arguments.scene.as_deref().map(Scene::load).transpose()?;
     let output = arguments.output.clone();
@@ -57,6 +58,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Code, CliError> {
     catch_interrupts();
     let before = solution.report.clone();
     let mut run = Run::resume(solution, settings)?;
+    if file.ends_with(CHECKPOINT) && scene.is_none() {
+        // Where there is none, or none that can be read, there is nothing to lose.
+        let earlier = Solution::read(&file.with_file_name(SOLUTION));
+        let _ = earlier.map(|earlier| run.fall_back_on(earlier));
+    }
     let known_warnings = run.solution().report.warnings.len();
     if let Some(scene) = scene {
         say::warnings(&scene.warnings);

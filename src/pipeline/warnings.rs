@@ -78,13 +78,18 @@ fn end_of_meshing(report: &Report) -> Option<String> {
 
 fn target_missed(report: &Report) -> Option<String> {
     let target = report.target.as_ref().filter(|target| !target.reached)?;
-    (report.stop_reason != StopReason::NoEmitter).then(|| {
-        format!(
+    match report.stop_reason {
+        StopReason::NoEmitter => None,
+        StopReason::Converged => Some(format!(
             "{ERROR_MISSED}: the estimate is not below {}% after {}",
             100.0 * target.n_rms,
             counted(target.rounds, "solve", "solves")
-        )
-    })
+        )),
+        _ => Some(format!(
+            "{ERROR_MISSED}: solve {} was cut short",
+            target.rounds
+        )),
+    }
 }
 
 /// Warns of options that clusters pass over.

@@ -142,6 +142,11 @@ impl Course {
         }
     }
 
+    /// Whether nothing is left to be done.
+    pub fn is_finished(&self) -> bool {
+        matches!(self.stage, Stage::Finished)
+    }
+
     /// Goes on with shooting: the options have become stricter, or the emitters are others.
     pub fn reopen(&mut self) {
         // A shot counts as shot from its beginning, and is refined for to its end. A wave does when it has arrived everywhere, and

@@ -52,6 +52,14 @@ fn every_limit_that_ends_something_is_in_a_warning_and_in_the_report() {
             &["--target-error", "1%", "--max-elements", "100"],
             &["--max-elements ended", "--target-error was not reached"],
         ),
+        (
+            &geometry,
+            &["--target-error", "1%", "--max-shots", "2"],
+            &[
+                "--max-shots ended the solve",
+                "--target-error was not reached: solve 1 was cut short",
+            ],
+        ),
         (&floor, &[], &["no surface emits light"]),
     ] {
         let (run, warnings) = ended("solve", of, &output, flags);

@@ -84,6 +84,30 @@ fn a_target_in_sessions_is_reached_by_the_same_rounds() {
     assert!(bits(run.finish()) == bits(whole));
 }
 
+#[test]
+fn a_round_that_is_left_twice_does_not_replace_the_one_before() {
+    let how = Settings {
+        target: Some(radiosity::Target {
+            n_rms: 0.003,
+            fixed: Default::default(),
+        }),
+        ..Settings::default()
+    };
+    let again = |solution: &Solution| Solution::decode(&file(solution)).expect("was just written");
+    let mut run = Run::new(bundled("secondary"), how.clone()).expect("can be solved");
+    while run.set_aside().is_none() {
+        let reason = run.go(&mut Batches(10)).expect("can be solved");
+        assert_eq!(reason, StopReason::Interrupted, "one round is not enough");
+    }
+    let state = again(run.set_aside().expect("is there"));
+    let before = again(&run.finish());
+    let mut run = Run::resume(state, how).expect("can be resumed");
+    run.fall_back_on(before.clone());
+    run.go(&mut Batches(2)).expect("can be solved");
+    assert!(run.set_aside().is_some());
+    assert_eq!(run.finish().light, before.light);
+}
+
 /// On the coarse mesh of another error the first round misses; how far says nothing of what its options come to.
 #[test]
 fn a_target_after_another_is_reached_as_by_a_solve_from_nothing() {
