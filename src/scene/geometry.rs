@@ -35,13 +35,15 @@ impl Geometry {
     }
 }
 
-/// What the settings say about how a geometry file is to be read.
+/// How a geometry file is to be read, as the settings say and as it is needed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reading {
     /// Radius in scene units of the emitters that stand for lights without extent; 0 leaves these lights out.
     pub point_light_radius: Option<f64>,
     /// Length of a scene unit: what a small surface radiates follows from its area in m².
     pub metres_per_unit: f64,
+    /// Whether a scene is read without the files of its materials, if they are missing.
+    pub spares_materials: bool,
 }
 
 impl Default for Reading {
@@ -49,6 +51,7 @@ impl Default for Reading {
         Self {
             point_light_radius: None,
             metres_per_unit: 1.0,
+            spares_materials: false,
         }
     }
 }
@@ -82,17 +85,17 @@ pub(super) fn read(
     warnings: &mut Vec<String>,
 ) -> Result<Geometry, SceneError> {
     match format {
-        Format::Obj => read_obj(path, warnings),
+        Format::Obj => read_obj(path, how, warnings),
         Format::Gltf => gltf::read(path, how, warnings),
         Format::Ply => ply::read(path, warnings),
     }
 }
 
 /// Checks the OBJ file, reads its materials, then its polygons.
-fn read_obj(path: &Path, warnings: &mut Vec<String>) -> Result<Geometry, SceneError> {
+fn read_obj(path: &Path, how: Reading, warnings: &mut Vec<String>) -> Result<Geometry, SceneError> {
     let file = TextFile::read(path, "an .obj file")?;
     let mut checked = obj_guard::check(&file)?;
-    let library = mtl::read(&file, &checked, warnings)?;
+    let library = mtl::read(&file, &checked, how.spares_materials, warnings)?;
     checked
         .unknown
         .report(warnings, path, "line", "of unknown kind skipped");

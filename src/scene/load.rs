@@ -27,7 +27,8 @@ impl Scene {
 
 impl NamedScene {
     /// Reads a scene as [`Scene::load`] does, with the names of its polygons; but surfaces radiate from the front alone where neither
-    /// the scene nor the material says `front` or `both`. Cameras serve nobody here, materials are not needed.
+    /// the scene nor the material says `front` or `both`. Cameras serve nobody here; materials are not needed, and their files may be
+    /// missing, with a warning.
     ///
     /// # Errors
     ///
@@ -155,10 +156,11 @@ fn assemble(
     auto: SidesRule,
 ) -> Result<NamedScene, SceneError> {
     let mut warnings = Vec::new();
-    let reading = match settings {
+    let mut reading = match settings {
         Some((file, settings)) => settings.reading(file)?,
         None => Reading::default(),
     };
+    reading.spares_materials = auto == SidesRule::Front;
     let mut geometry = geometry::read(path, format, reading, &mut warnings)?;
     let up = settings.and_then(|(_, s)| s.up).unwrap_or_default();
     if up == UpAxis::Z {

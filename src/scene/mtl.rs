@@ -80,16 +80,24 @@ impl Library {
     }
 }
 
-/// Reads every library that `obj` names, and adds the materials that it uses without a definition.
+/// Reads every library that `obj` names, and adds the materials that it uses without a definition. A library may be missing if that is `spared`.
 pub(super) fn read(
     file: &TextFile,
     obj: &CheckedObj,
+    spared: bool,
     warnings: &mut Vec<String>,
 ) -> Result<Library, SceneError> {
     let mut scan = Scan::default();
     let mut seen = Vec::new();
     for (line, named) in &obj.libraries {
-        for path in library_paths(file, *line, named)? {
+        let paths = match library_paths(file, *line, named) {
+            Err(missing) if spared => {
+                warnings.push(format!("{missing}; went on without it"));
+                continue;
+            }
+            found => found?,
+        };
+        for path in paths {
             if !seen.contains(&path) {
                 scan.file(&TextFile::read(&path, "an .mtl file")?, warnings)?;
                 seen.push(path);

@@ -144,6 +144,7 @@ impl Settings {
         Ok(Reading {
             point_light_radius: radius.map(|radius| *radius.get_ref()),
             metres_per_unit: self.metres_per_unit(file)?,
+            ..Reading::default()
         })
     }
 

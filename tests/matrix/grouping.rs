@@ -144,6 +144,24 @@ fn what_has_one_name_in_a_gltf_file_is_one_row_with_the_mean_of_its_colours() {
 }
 
 #[test]
+fn materials_that_are_in_no_file_are_rows_all_the_same() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let path = folder.path().join("it.obj");
+    let sheets = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl oak\nf 1 2 3 4\nusemtl glass\nf 4 3 2 1\n";
+    fs::write(&path, sheets).expect("can be written");
+    let named = NamedScene::load(&path).expect("is a scene");
+    let warnings = &named.scene.warnings;
+    assert!(warnings[0].contains("`mtllib none.mtl`"), "{warnings:?}");
+    let options = Options {
+        by: By::Material,
+        ..portable()
+    };
+    assert_eq!(labels(&rows(&named, options)), ["oak", "glass"]);
+    // Light depends on them.
+    assert!(NamedScene::load_lit(&path).is_err());
+}
+
+#[test]
 fn names_that_look_like_those_of_other_rows_are_told_apart() {
     let sheets = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\no lid back\nf 1 2 3\no lid\nf 4 5 6\n";
     let found = rows(&load("sides = \"both\"\n", sheets), portable());
