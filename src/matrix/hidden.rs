@@ -346,7 +346,8 @@ impl<'a> Looker<'a> {
             *part = self.eyes.look(view, quarter)?;
         }
         let fine: Sums = parts.iter().copied().sum();
-        let mut error = GAIN * (fine.visible - coarse.share() * fine.all).abs();
+        let shift = GAIN * (fine.visible - coarse.share() * fine.all);
+        let mut error = shift.abs();
         if error <= tolerance && fine.is_plain() {
             let differ = self.eyes.corners_differ(view, tile, fine.share())?;
             error = 0.5 * BETWEEN_POINTS * differ * fine.all;
@@ -362,6 +363,7 @@ impl<'a> Looker<'a> {
                 sums: fine,
                 off,
                 error,
+                shift,
                 depth,
             });
         }
