@@ -76,7 +76,7 @@ pub(super) fn each_more(tile: &Convex, mut node: impl FnMut(DVec3, f64)) {
 }
 
 /// A point of a bilinear quad, with the area for which it stands if it has all the weight.
-fn place([a, b, c, d]: [DVec3; 4], u: f64, v: f64) -> (DVec3, f64) {
+pub(super) fn place([a, b, c, d]: [DVec3; 4], u: f64, v: f64) -> (DVec3, f64) {
     let (left, right) = (a.lerp(d, v), b.lerp(c, v));
     let along_u = right - left;
     let along_v = (d - a).lerp(c - b, u);

@@ -2,17 +2,18 @@
 //!
 //! From a point of one facet the visible part of the other is known exactly ([`super::visible`]), so only the integral over the
 //! point is left. It is smooth from the side that is farther from what lies between and nearly a step from the nearer one;
-//! where the two sides agree, both are right. Where they do not, the smoother one is refined until it is stable; if that is still not
-//! what the other says, as happens where all points of one side miss a sliver, the other is refined too. Numbers of points that agree by
-//! accident are found out by a third that does not. Where the refined sides differ, or next to nothing is visible, both are divided
-//! into zones ([`super::zones`]) and refined further; so are they where row sums tell that it went wrong all the same
-//! ([`super::again`]).
+//! where the two sides agree, both are right. Where they do not, the smoother one is refined until it is stable. Numbers of points that
+//! agree by accident are found out by a third that does not. If the other side still says something else, as it does where all points miss a
+//! sliver, the smoother one is divided into zones ([`super::zones`]) and integrated without trust in a few points ([`super::integral`]).
+//! So is it where agreement says nothing: where next to nothing is visible, where the sides mirror one another, and where row sums tell that
+//! it went wrong all the same ([`super::again`]).
 //!
 //! What the pair would exchange unhindered is known beforehand. Where the same points come to something else, as they do near a
 //! common edge, the difference is visible as far as the tiles are that caused it.
 
 use super::convex::Convex;
 use super::facet::Facet;
+use super::integral::Integral;
 use super::look::{Eyes, Sums, View};
 use super::occluder::Between;
 use super::pair::Kind;
@@ -39,9 +40,6 @@ const BETWEEN_POINTS: f64 = 0.2;
 /// What nine points may have missed of a shadow that four of them did not meet: the tenth of the tile that lies beyond them.
 const MISSED: f64 = 0.1;
 
-/// Where the sides differ, both are refined to this fraction of the tolerance.
-const FINER: f64 = 0.1;
-
 /// The error of the quarters over what they changed: a kink runs through two of the four, where it matters an eighth as much.
 const GAIN: f64 = 1.0 / 3.0;
 
@@ -51,7 +49,7 @@ const SHARED: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Four and nine points of one side may agree by accident: this much of what they differ by from four points of the other is error too.
 const OTHER: f64 = 0.5;
 
-/// Where the less smooth side differs by more than this many tolerances, it is refined too, be its own error ever so large.
+/// The less smooth side may differ by as much as its own error, but by no more than this many tolerances.
 const AGREES: f64 = 4.0;
 
 /// Four and sixteen points of one side may agree by accident too: this much of what nine differ from the sixteen by must be no more than
@@ -62,8 +60,12 @@ const NINE: f64 = 0.75;
 /// Where less than this is visible from either side, few points may have missed most of it: slits along edges.
 const DARK: f64 = 0.01;
 
-/// How often every tile is quartered where nothing is taken for granted.
-const CAREFUL: u32 = 2;
+/// Of the tolerance, what both sides are integrated to where nothing is taken for granted.
+const CAREFUL: f64 = 0.1;
+
+/// Sides that see the same to within this fraction of what is exchanged mirror one another, as adjacent walls around a cube do: each says
+/// what the other says, whatever both miss.
+const MIRRORED: f64 = 1e-6;
 
 /// What came out.
 pub(super) struct Share {
@@ -195,20 +197,26 @@ impl<'a> Looker<'a> {
         share
     }
 
-    /// Looks from few points of both sides, refines the smoother one where that is not enough, and the other where they differ.
+    /// Looks from few points of both sides, refines the smoother one where that is not enough, and divides it where they differ.
     fn integrate(&mut self, views: [View<'_>; 2], tolerance: f64) -> Result<Share, TooIntricate> {
         let [view, back] = views;
         let sides = [view, back];
         let is_hidden = |it: &View<'_>| self.eyes.is_hidden(*it, it.outer.shape.tiles());
         if sides.iter().all(is_hidden) && self.eyes.corners_hidden(view) {
-            let zones = self.eyes.zones(view).into_iter();
-            if self.eyes.is_hidden(view, zones) {
+            let zones = self.eyes.zones(view);
+            let tiles = zones.iter().flat_map(|zone| zone.shape.tiles());
+            if self.eyes.is_hidden(view, tiles) {
                 return Ok(Share::of((0.0, 0.0), tolerance));
             }
         }
         let coarse = [self.eyes.look_all(view)?, self.eyes.look_all(back)?];
+        if are_mirrored(coarse, view.whole) {
+            return Ok(Share::of(self.divide(view, tolerance)?, tolerance));
+        }
         if coarse.iter().all(|it| it.share() < DARK) {
-            return self.refine_both([(view, coarse[0]), (back, coarse[1])], tolerance, 0);
+            let found = self.divide(view, tolerance)?;
+            let other = self.divide(back, tolerance)?;
+            return Ok(Share::of(better(found, other), tolerance));
         }
         if coarse.iter().all(Sums::sees_all) {
             let error = BETWEEN_POINTS * self.eyes.corners_differ(view, &view.outer.shape, 1.0)?;
@@ -235,50 +243,34 @@ impl<'a> Looker<'a> {
         if guess.1.max(differs) <= tolerance && agrees(guess) {
             return Ok(Share::of(guess, tolerance));
         }
-        let nine = [guess.0, other.0];
-        let found = self.refine_all(smooth, nine[0], tolerance)?;
-        if agrees(found) {
+        let found = self.refine_all(smooth, guess.0, tolerance)?;
+        if found.1 <= tolerance && agrees(found) {
             return Ok(Share::of(found, tolerance));
         }
-        let other = self.refine_all(rough, nine[1], AGREES * tolerance)?;
-        if (found.0 - other.0).abs() <= found.1 + other.1 + tolerance {
+        let found = self.divide(smooth.0, tolerance)?;
+        if found.1 <= tolerance {
             return Ok(Share::of(found, tolerance));
         }
-        // One of them has missed something.
-        self.refine_both([smooth, rough], tolerance, 0)
+        let other = self.divide(rough.0, tolerance)?;
+        Ok(Share::of(better(found, other), tolerance))
     }
 
-    /// Refines both sides, whatever few points say.
+    /// Divides both sides, whatever few points say.
     fn integrate_with_care(
         &mut self,
-        views: [View<'_>; 2],
+        [view, back]: [View<'_>; 2],
         tolerance: f64,
     ) -> Result<Share, TooIntricate> {
-        let [view, back] = views;
-        let sides = [
-            (view, self.eyes.look_all(view)?),
-            (back, self.eyes.look_all(back)?),
-        ];
-        self.refine_both(sides, tolerance, CAREFUL)
+        let found = self.divide(view, CAREFUL * tolerance)?;
+        let other = self.divide(back, CAREFUL * tolerance)?;
+        Ok(Share::of(better(found, other), tolerance))
     }
 
-    /// Refines both sides, divided along the lines where what their points see has kinks, quartering quarters so many times at `least`.
-    fn refine_both(
-        &mut self,
-        sides: [(View<'_>, Sums); 2],
-        tolerance: f64,
-        least: u32,
-    ) -> Result<Share, TooIntricate> {
-        let mut found = [(0.0, 0.0); 2];
-        for (found, side) in found.iter_mut().zip(sides) {
-            let zones = self.eyes.zones(side.0);
-            let refined = self.refine_tiles(side, &zones, FINER * tolerance, least)?;
-            *found = refined.share(side.0.whole);
-        }
-        found.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let [better, other] = found;
-        let differs = (better.0 - other.0).abs();
-        Ok(Share::of((better.0, differs.max(better.1)), tolerance))
+    /// The share that one side sees, with its error, divided along the lines where what its points see has kinks.
+    fn divide(&mut self, view: View<'_>, tolerance: f64) -> Result<(f64, f64), TooIntricate> {
+        let zones = self.eyes.zones(view);
+        let Integral { value, error } = self.eyes.integral(view, &zones, tolerance * view.whole)?;
+        Ok(((value / view.whole).clamp(0.0, 1.0), error / view.whole))
     }
 
     /// The share that one side sees from nine points a tile, and its error.
@@ -354,7 +346,8 @@ impl<'a> Looker<'a> {
             *part = self.eyes.look(view, quarter)?;
         }
         let fine: Sums = parts.iter().copied().sum();
-        let mut error = GAIN * (fine.visible - coarse.share() * fine.all).abs();
+        let shift = GAIN * (fine.visible - coarse.share() * fine.all);
+        let mut error = shift.abs();
         if error <= tolerance && fine.is_plain() {
             let differ = self.eyes.corners_differ(view, tile, fine.share())?;
             error = 0.5 * BETWEEN_POINTS * differ * fine.all;
@@ -370,6 +363,7 @@ impl<'a> Looker<'a> {
                 sums: fine,
                 off,
                 error,
+                shift,
                 depth,
             });
         }
@@ -379,4 +373,16 @@ impl<'a> Looker<'a> {
         }
         Ok(refined)
     }
+}
+
+/// Whether both sides see a part, and the same one.
+fn are_mirrored(sides: [Sums; 2], whole: f64) -> bool {
+    let [one, other] = sides.map(|it| it.visible);
+    !sides.iter().any(Sums::is_plain) && (one - other).abs() <= MIRRORED * whole
+}
+
+/// Of two shares with their errors the better one; what they differ by is error too.
+fn better(one: (f64, f64), other: (f64, f64)) -> (f64, f64) {
+    let (share, error) = if one.1 <= other.1 { one } else { other };
+    (share, error.max((one.0 - other.0).abs()))
 }

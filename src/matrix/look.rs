@@ -7,7 +7,7 @@ use super::occluder::Between;
 use super::space::Space;
 use super::unhindered::{seen, seen_afar};
 use super::visible::{Cutter, Seen, Sight, TooIntricate};
-use super::zones::zones;
+use super::zones::{Zone, zones};
 use glam::DVec3;
 
 /// Corners are looked from a little inside, since on a common edge a form factor has no value.
@@ -93,7 +93,37 @@ pub(super) struct View<'a> {
     pub whole: f64,
 }
 
+impl Seen {
+    /// How much that is of `all`, which is asked for only where it matters.
+    pub fn of(self, all: impl FnOnce() -> f64) -> f64 {
+        match self {
+            Self::All => all(),
+            Self::AllBut(hidden) => {
+                let all = all();
+                let left = all - hidden;
+                if left > ROUNDING * all { left } else { 0.0 }
+            }
+            Self::Nothing => 0.0,
+        }
+    }
+}
+
 impl<'a> View<'a> {
+    /// Of a point's hemisphere, what a part of the other facet would fill.
+    fn measure(&self, eye: DVec3, part: &[DVec3]) -> f64 {
+        let normal = self.outer.normal;
+        if self.is_far {
+            seen_afar(normal, eye, self.inner.normal, part)
+        } else {
+            seen(normal, eye, part)
+        }
+    }
+
+    /// The same for all of it.
+    pub fn measure_all(&self, eye: DVec3) -> f64 {
+        self.measure(eye, self.inner.corners())
+    }
+
     fn sight(&self, space: &'a Space) -> Sight<'a> {
         Sight {
             facet: self.inner,
@@ -121,11 +151,9 @@ impl<'a> Eyes<'a> {
         }
     }
 
-    /// The tiles of the facet that looks, divided where what their points see has kinks.
-    pub fn zones(&mut self, view: View<'_>) -> Vec<Convex> {
-        let zones = zones(&mut self.cutter, view.outer, view.sight(self.space));
-        let tiles = zones.iter().flat_map(Convex::tiles);
-        tiles.collect()
+    /// The facet that looks, divided where what its points see has kinks, without what sees nothing.
+    pub fn zones(&mut self, view: View<'_>) -> Vec<Zone> {
+        zones(&mut self.cutter, view.outer, view.sight(self.space))
     }
 
     /// Looks from the four points of the product rule on every tile.
@@ -163,26 +191,20 @@ impl<'a> Eyes<'a> {
     }
 
     fn look_from(&mut self, view: View<'_>, eye: DVec3, weight: f64) -> Result<Sums, TooIntricate> {
-        let normal = view.outer.normal;
-        let measure = |part: &[DVec3]| {
-            if view.is_far {
-                seen_afar(normal, eye, view.inner.normal, part)
-            } else {
-                seen(normal, eye, part)
-            }
-        };
-        let found = self.cutter.seen(eye, view.sight(self.space), measure)?;
-        let all = measure(view.inner.corners());
-        let visible = match found {
-            Seen::All => all,
-            Seen::AllBut(hidden) if all - hidden > ROUNDING * all => all - hidden,
-            Seen::AllBut(_) | Seen::Nothing => 0.0,
-        };
+        let found = self.seen_from(view, eye)?;
+        let all = view.measure_all(eye);
+        let visible = found.of(|| all);
         Ok(Sums {
             visible: weight * visible,
             all: weight * all,
             squares: weight * visible * visible / all.max(f64::MIN_POSITIVE),
         })
+    }
+
+    /// What one point sees.
+    pub fn seen_from(&mut self, view: View<'_>, eye: DVec3) -> Result<Seen, TooIntricate> {
+        let measure = |part: &[DVec3]| view.measure(eye, part);
+        self.cutter.seen(eye, view.sight(self.space), measure)
     }
 
     /// The mean difference between what the corners of a tile see and `share`.

@@ -9,7 +9,7 @@
 //! 2. `join`: neighbours in one plane become one `occluder`, and convex `body`s hide by their `silhouette`; `tree` finds for a pair of facets those that may come between.
 //! 3. `pair`: facets that face away, or are hidden by one surface, exchange exactly nothing; where nothing lies between, the exchange is
 //!    analytic (`unhindered`, `contour`); else shadows are cut out (`visible`, `look`) and the rest is integrated over both sides until they
-//!    agree (`hidden`), in the end over the `zones` between the lines where what points see has kinks, or rays are traced where there is too much to cut (`rays`).
+//!    agree (`hidden`), in the end over the `zones` between the lines where what points see has kinks (`integral`, by the rule of `genz_malik`), or rays are traced where there is too much to cut (`rays`).
 //! 4. `work` does so for all pairs of rows, and `again` once more for the rows whose sums tell that an entry is off.
 //! 5. `enforce` closes the balance on demand, `balance` solves for radiosity.
 //!
@@ -30,7 +30,9 @@ mod enforce;
 mod error;
 mod facet;
 mod gauss;
+mod genz_malik;
 mod hidden;
+mod integral;
 mod join;
 mod linear;
 mod look;

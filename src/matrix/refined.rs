@@ -8,7 +8,10 @@ pub(super) struct Refined {
     pub sums: Sums,
     /// How much the last refinement of each tile changed what it would see unhindered, and how much of that is visible.
     pub off: Sums,
+    /// The root of the sum of the squares of the tiles' errors.
     pub error: f64,
+    /// The sum of those with a sign: of tiles along one shadow they have the same.
+    pub shift: f64,
     /// How often quarters were quartered at most.
     pub depth: u32,
 }
@@ -18,6 +21,7 @@ impl Refined {
         self.sums = [self.sums, part.sums].into_iter().sum();
         self.off = [self.off, part.off].into_iter().sum();
         self.error = self.error.hypot(part.error);
+        self.shift += part.shift;
         self.depth = self.depth.max(part.depth);
     }
 
@@ -34,6 +38,6 @@ impl Refined {
     /// The visible share of what is exchanged unhindered, with its error.
     pub fn share(&self, whole: f64) -> (f64, f64) {
         let visible = (self.sums.visible / whole).clamp(0.0, 1.0);
-        (visible, self.error / whole)
+        (visible, self.error.max(self.shift.abs()) / whole)
     }
 }

@@ -199,18 +199,6 @@ fn subtract(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntr
     }
 }
 
-/// Divides all fragments into what lies within all half-spaces and what does not.
-pub(super) fn split(planes: &[Plane], fragments: &mut Vec<Convex>) -> Result<(), TooIntricate> {
-    for k in 0..fragments.len() {
-        let (fragment, before) = (fragments[k], fragments.len());
-        match cut_out(fragment, planes, fragments)? {
-            None => fragments.truncate(before),
-            Some(within) => fragments[k] = within,
-        }
-    }
-    Ok(())
-}
-
 /// Whether a fragment lies outside of one half-space.
 fn misses(fragment: &Convex, planes: &[Plane]) -> bool {
     let outside = |plane: &Plane| {
@@ -223,7 +211,7 @@ fn misses(fragment: &Convex, planes: &[Plane]) -> bool {
 }
 
 /// Appends the parts of a fragment outside of any half-space, and returns the part within all; `None` if there is none.
-fn cut_out(
+pub(super) fn cut_out(
     mut rest: Convex,
     planes: &[Plane],
     parts: &mut Vec<Convex>,
