@@ -12,6 +12,15 @@ pub fn vector_area(corners: &[DVec3]) -> DVec3 {
         * 0.5
 }
 
+/// The solid angle that a triangle fills seen from a point, sr: positive from behind, where its corners run clockwise.
+pub fn solid_angle(triangle: [DVec3; 3], point: DVec3) -> f64 {
+    // Van Oosterom and Strackee (1983), eq. 8.
+    let [a, b, c] = triangle.map(|p| p - point);
+    let [x, y, z] = [a, b, c].map(DVec3::length);
+    let below = x * y * z + a.dot(b) * z + a.dot(c) * y + b.dot(c) * x;
+    2.0 * a.dot(b.cross(c)).atan2(below)
+}
+
 /// Centre of mass of a convex polygon; the mean of the corners where there is no area.
 pub fn centroid(corners: &[DVec3]) -> DVec3 {
     let origin = corners[0];
@@ -109,6 +118,14 @@ mod tests {
     use super::*;
 
     const UNIT: [DVec3; 4] = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+
+    #[test]
+    fn an_octant_fills_an_eighth_of_the_sphere() {
+        let octant = [DVec3::X, DVec3::Y, DVec3::Z];
+        let eighth = std::f64::consts::FRAC_PI_2;
+        assert!((solid_angle(octant, DVec3::ZERO) - eighth).abs() < 1e-15);
+        assert!(solid_angle(octant, DVec3::ONE) < 0.0, "from its front");
+    }
 
     #[test]
     fn unit_square() {

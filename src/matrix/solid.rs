@@ -4,6 +4,7 @@
 //! into by others. What it encloses may be hollow: a room with walls of some thickness is a solid with another, turned inwards,
 //! in it, and that may have holes.
 
+use crate::geometry::polygon::solid_angle;
 use crate::geometry::{Sets, bounds};
 use crate::scene::{Scene, Sides, Surface};
 use glam::DVec3;
@@ -109,14 +110,8 @@ impl Skin {
         if self.is_closed && !self.is_around(point) {
             return 0.0;
         }
-        let half_angles = self.triangles.iter().map(|triangle| {
-            // Van Oosterom and Strackee (1983), eq. 8.
-            let [a, b, c] = triangle.map(|p| p - point);
-            let [x, y, z] = [a, b, c].map(DVec3::length);
-            let below = x * y * z + a.dot(b) * z + a.dot(c) * y + b.dot(c) * x;
-            a.dot(b.cross(c)).atan2(below)
-        });
-        half_angles.sum::<f64>() / TAU
+        let angles = self.triangles.iter().map(|it| solid_angle(*it, point));
+        angles.sum::<f64>() / (2.0 * TAU)
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::polygons::Polygons;
 use super::sides::Bodies;
-use crate::geometry;
+use crate::geometry::{self, polygon::solid_angle};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -76,16 +76,9 @@ fn volume(polygons: &Polygons, set: &[u32]) -> f64 {
 
 /// Whether a point is inside a closed set: the solid angles of its triangles make a whole sphere.
 fn surrounds(polygons: &Polygons, set: &[u32], point: DVec3) -> bool {
-    let solid_angle: f64 = triangles(polygons, set)
-        .map(|triangle| {
-            // Van Oosterom and Strackee (1983), eq. 8.
-            let [a, b, c] = triangle.map(|p| p - point);
-            let [x, y, z] = [a, b, c].map(DVec3::length);
-            let below = x * y * z + a.dot(b) * z + a.dot(c) * y + b.dot(c) * x;
-            2.0 * a.dot(b.cross(c)).atan2(below)
-        })
-        .sum();
-    solid_angle.abs() > TAU
+    let triangles = triangles(polygons, set);
+    let all: f64 = triangles.map(|it| solid_angle(it, point)).sum();
+    all.abs() > TAU
 }
 
 /// The middle of the box around a set.
