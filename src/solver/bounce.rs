@@ -18,6 +18,10 @@ use crate::mesh::NONE;
 use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 
+/// Thresholds are so many times those of the gathering: what arrives is drawn anew in each wave, and only what it comes to where light is
+/// gathered from counts.
+const LOOSER: f64 = 1.5;
+
 /// What arrives is taken to be too little or too much by no more than this factor.
 const MOST_CLOSING: f64 = 1.25;
 
@@ -38,7 +42,8 @@ impl Solver<'_> {
     pub(super) fn bounce(&mut self, sign: Sign, cells: &[Spectrum], sent: Power, before: Bounce) {
         let power = sent.element_sum() / self.emitted().element_sum();
         let shooter = self.radiating(cells, true);
-        let sampler = self.sampler();
+        let mut sampler = self.sampler();
+        sampler.thresholds = sampler.thresholds.scaled(LOOSER);
         let beam = Beam {
             sampler: &sampler,
             shooter: &shooter,
@@ -102,5 +107,44 @@ impl Solver<'_> {
         let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &receivers);
         self.course.rays += rays;
         gathers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::options::{Options, Preset};
+    use crate::solver::shoot::Shooter;
+    use crate::solver::trial::Trial;
+
+    #[test]
+    fn a_bounce_takes_fewer_rays_than_a_gathering_at_the_same_points() {
+        let options = Options {
+            cluster_from: 1,
+            ..Preset::Draft.options()
+        };
+        let trial = Trial::after(1, options);
+        let mut solver = trial.solver();
+        let unshot = solver.unshot_by_sign();
+        solver.begin_wave(unshot, None);
+        let taken = solver.course.rays;
+
+        let near = solver.neighbourhoods.take().expect("it was a bounce");
+        let tiling = solver.tiling.take().expect("they were kept");
+        let shooter = Shooter::All {
+            tiling,
+            settled: true,
+        };
+        let beam = Beam {
+            sampler: &solver.sampler(),
+            shooter: &shooter,
+            sign: Sign::Positive,
+        };
+        solver.arrivals_near(beam, &near);
+        let gathered = solver.course.rays - taken;
+        assert!(
+            taken > 0 && 10 * taken < 9 * gathered,
+            "{taken} of {gathered}"
+        );
     }
 }

@@ -120,9 +120,10 @@ impl<'a> Descent<'a> {
     fn evaluate(&mut self, elements: &[u32]) {
         let mut fresh = Vec::new();
         for element in elements {
+            let side = self.mesh.longest_side(*element);
             for vertex in self.mesh.element(*element).vertices() {
                 if !std::mem::replace(&mut self.is_known[vertex as usize], true) {
-                    fresh.push(vertex);
+                    fresh.push((vertex, side));
                 }
             }
         }

@@ -16,6 +16,7 @@ mod descent;
 mod error;
 mod escape;
 mod feelers;
+mod fineness;
 mod groups;
 mod ledger;
 mod light;

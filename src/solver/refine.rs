@@ -243,8 +243,9 @@ impl Refinement<'_> {
         let first = first_vertex as u32;
         let buried = buried(self.mesh, self.beam.sampler.visibility, self.backing, first);
         self.mesh.finish_topology(first, &buried);
-        let open: Vec<u32> = (first..self.mesh.vertices.len() as u32)
-            .filter(|v| !self.mesh.buried[*v as usize])
+        let open: Vec<(u32, f64)> = (first..)
+            .zip(self.longest_around(first, &fresh))
+            .filter(|(v, _)| !self.mesh.buried[*v as usize])
             .collect();
         self.rays += shoot_at(self.mesh, self.light, self.beam, &open, self.arrived);
         self.arrived.continue_to_buried(self.mesh, first);
@@ -255,6 +256,20 @@ impl Refinement<'_> {
         }
         fresh.retain(|e| self.mesh.elements.is_leaf(*e));
         fresh
+    }
+
+    /// The longest of `elements` around each vertex from `first` on.
+    fn longest_around(&self, first: u32, elements: &[u32]) -> Vec<f64> {
+        let mut longest = vec![0.0_f64; self.mesh.vertices.len() - first as usize];
+        for element in elements {
+            let side = self.mesh.longest_side(*element);
+            let of = self.mesh.element(*element);
+            for vertex in of.vertices().filter(|v| *v >= first) {
+                let longest = &mut longest[(vertex - first) as usize];
+                *longest = longest.max(side);
+            }
+        }
+        longest
     }
 
     /// Gives the new vertices of a split element what its fan had before this shot.

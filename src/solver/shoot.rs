@@ -1,6 +1,7 @@
 //! What shoots, evaluated at many vertices.
 
 use super::arrived::Arrived;
+use super::fineness::{MOST_HALVINGS, halved, halvings};
 use super::light::{Light, Sign};
 use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
@@ -62,25 +63,35 @@ pub(super) fn evaluate(
     (gathers, rays)
 }
 
-/// Evaluates `beam` at the given vertices of `mesh` into `arrived`, which has a place for every vertex; returns the number of rays.
+/// Evaluates `beam` at the given vertices of `mesh`, each with how long the element is that it stands for, into `arrived`, which has a place for
+/// every vertex; returns the number of rays.
 pub(super) fn shoot_at(
     mesh: &Mesh,
     light: &Light,
     beam: Beam,
-    vertices: &[u32],
+    vertices: &[(u32, f64)],
     arrived: &mut Arrived,
 ) -> u64 {
-    let points: Vec<_> = vertices
-        .par_iter()
-        .with_min_len(256)
-        .filter(|v| mesh.receives(**v))
-        .map(|v| receiver_at(mesh, light, *v))
-        .collect();
-    let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &points);
-    let receiving = vertices.iter().filter(|v| mesh.receives(**v));
-    for (vertex, mut gather) in receiving.zip(gathers) {
-        gather.irradiance *= beam.sign.factor();
-        arrived.set(*vertex, gather);
+    let extent = mesh.frame.extent();
+    let mut rays = 0;
+    for times in 0..=MOST_HALVINGS {
+        let is_asked = |side: f64| halvings(beam.shooter, side / extent) == times;
+        let points: Vec<_> = vertices
+            .par_iter()
+            .with_min_len(256)
+            .filter(|(v, side)| mesh.receives(*v) && is_asked(*side))
+            .map(|(v, _)| receiver_at(mesh, light, *v))
+            .collect();
+        let sampler = Sampler {
+            thresholds: halved(beam.sampler.thresholds, times),
+            ..*beam.sampler
+        };
+        let (gathers, traced) = evaluate(&sampler, beam.shooter, &points);
+        rays += traced;
+        for ((_, vertex), mut gather) in points.iter().zip(gathers) {
+            gather.irradiance *= beam.sign.factor();
+            arrived.set(*vertex, gather);
+        }
     }
     rays
 }
