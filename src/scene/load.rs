@@ -160,6 +160,7 @@ fn assemble(
         Some((file, settings)) => settings.reading(file)?,
         None => Reading::default(),
     };
+    // As for form factors, which take names alone: see [`NamedScene::load`].
     reading.spares_materials = auto == SidesRule::Front;
     let mut geometry = geometry::read(path, format, reading, &mut warnings)?;
     let up = settings.and_then(|(_, s)| s.up).unwrap_or_default();

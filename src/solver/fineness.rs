@@ -12,15 +12,19 @@ use crate::form_factor::SourceThresholds;
 const SHORT: f64 = 2.0 * SIZE;
 
 /// … and for each time that they are twice as long thresholds are halved, but no more often than this.
-pub(super) const MOST_HALVINGS: u32 = 2;
+const MOST_HALVINGS: u32 = 2;
 
-/// How often thresholds are halved for what stands for an element with sides as long as `side`, a part of the scene's extent. A patch that
-/// shoots alone is split where its rays disagree, and needs no more.
-pub(super) fn halvings(shooter: &Shooter, side: f64) -> u32 {
+/// How often thresholds are halved at most. A patch that shoots alone is split where its rays disagree, and needs no more.
+pub(super) fn most_halvings(shooter: &Shooter) -> u32 {
     match shooter {
         Shooter::Patch(_) => 0,
-        Shooter::All { .. } => ((side / SHORT).log2().max(0.0) as u32).min(MOST_HALVINGS),
+        Shooter::All { .. } => MOST_HALVINGS,
     }
+}
+
+/// How often they are for what stands for an element with sides as long as `side`, a part of the scene's extent.
+pub(super) fn halvings(shooter: &Shooter, side: f64) -> u32 {
+    ((side / SHORT).log2().max(0.0) as u32).min(most_halvings(shooter))
 }
 
 /// Thresholds that were halved so often.

@@ -1,7 +1,7 @@
 //! What shoots, evaluated at many vertices.
 
 use super::arrived::Arrived;
-use super::fineness::{MOST_HALVINGS, halved, halvings};
+use super::fineness::{halved, halvings, most_halvings};
 use super::light::{Light, Sign};
 use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
@@ -74,7 +74,7 @@ pub(super) fn shoot_at(
 ) -> u64 {
     let extent = mesh.frame.extent();
     let mut rays = 0;
-    for times in 0..=MOST_HALVINGS {
+    for times in 0..=most_halvings(beam.shooter) {
         let is_asked = |side: f64| halvings(beam.shooter, side / extent) == times;
         let points: Vec<_> = vertices
             .par_iter()

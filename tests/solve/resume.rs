@@ -22,6 +22,17 @@ pub(super) fn settings(options: Options, engine: EngineChoice, threads: usize) -
     }
 }
 
+/// Solves to an error.
+fn to(n_rms: f64) -> Settings {
+    Settings {
+        target: Some(radiosity::Target {
+            n_rms,
+            fixed: Default::default(),
+        }),
+        ..settings(draft(), ENGINE, 0)
+    }
+}
+
 /// Solves in sessions of so many batches; between them there is nothing but the file. Returns the number of sessions as well.
 pub(super) fn in_sessions(scene: &Scene, how: &Settings, batches: usize) -> (Solution, usize) {
     let mut run = Run::new(scene.clone(), how.clone()).expect("can be solved");
@@ -65,13 +76,7 @@ fn what_was_left_on_one_thread_goes_on_with_seven() {
 
 #[test]
 fn a_target_in_sessions_is_reached_by_the_same_rounds() {
-    let how = Settings {
-        target: Some(radiosity::Target {
-            n_rms: 0.03,
-            fixed: Default::default(),
-        }),
-        ..Settings::default()
-    };
+    let how = to(0.03);
     let scene = bundled("secondary");
     let whole = radiosity::solve(&scene, &how, &mut Silent).expect("can be solved");
     // One stop, in the last round or the only one.
@@ -86,13 +91,7 @@ fn a_target_in_sessions_is_reached_by_the_same_rounds() {
 
 #[test]
 fn a_round_that_is_left_twice_does_not_replace_the_one_before() {
-    let how = Settings {
-        target: Some(radiosity::Target {
-            n_rms: 0.003,
-            fixed: Default::default(),
-        }),
-        ..Settings::default()
-    };
+    let how = to(0.003);
     let again = |solution: &Solution| Solution::decode(&file(solution)).expect("was just written");
     let mut run = Run::new(bundled("secondary"), how.clone()).expect("can be solved");
     while run.set_aside().is_none() {
@@ -112,13 +111,6 @@ fn a_round_that_is_left_twice_does_not_replace_the_one_before() {
 #[test]
 fn a_target_after_another_is_reached_as_by_a_solve_from_nothing() {
     let scene = bundled("secondary");
-    let to = |n_rms: f64| Settings {
-        target: Some(radiosity::Target {
-            n_rms,
-            fixed: Default::default(),
-        }),
-        ..settings(draft(), ENGINE, 0)
-    };
     let coarse = radiosity::solve(&scene, &to(0.2), &mut Silent).expect("can be solved");
     let anew = radiosity::solve(&scene, &to(0.015), &mut Silent).expect("can be solved");
     let mut run = Run::resume(coarse, to(0.015)).expect("can be resumed");
