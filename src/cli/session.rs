@@ -7,11 +7,12 @@ use super::progress::{Look, Watch, is_due, is_interrupted};
 use super::results::{CHECKPOINT, SOLUTION};
 use super::say::{self, is_quiet};
 use super::solve::{How, summary, write_beside};
-use crate::Run;
 use crate::output::write_atomically;
 use crate::render::View;
 use crate::solution::Solution;
 use crate::solver::StopReason;
+use crate::threads::pool;
+use crate::{Run, SolveError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -79,14 +80,23 @@ impl Session<'_> {
         present(audience, &solution);
         self.warn(&solution);
         let started = Instant::now();
-        write_atomically(&self.output.join(SOLUTION), |out| solution.write(out))?;
+        let pool = pool(self.how.threads).map_err(SolveError::from)?;
+        // The solution is written by one thread; others make triangles of it meanwhile.
+        let file = self.output.join(SOLUTION);
+        let (written, lit) = pool.install(|| {
+            let write = || write_atomically(&file, |out| solution.write(out));
+            let is_shown = !self.how.formats.0.is_empty() || !self.how.no_pictures;
+            rayon::join(write, || is_shown.then(|| solution.lit_mesh()))
+        });
+        written?;
         if !is_left {
             // It is in the solution now, or belongs to a run before this one; `resume` takes it before a solution, so it goes even if
             // nothing else can be written.
             let _ = std::fs::remove_file(self.output.join(CHECKPOINT));
         }
         let place = (self.output, started);
-        write_beside(&mut solution, place, self.how, &watch.history)?;
+        let history = &watch.history;
+        pool.install(|| write_beside(&mut solution, lit, place, self.how, history))?;
         self.say(&solution)?;
         // Also one that came while results were written, which they are now.
         Ok(match is_interrupted() {

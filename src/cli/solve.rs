@@ -22,6 +22,7 @@ use crate::visibility::EngineChoice;
 use crate::words::counted;
 use crate::{Run, Settings};
 use clap::Args;
+use rayon::prelude::*;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -204,9 +205,10 @@ pub(super) fn prepare(folder: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Writes all results but the solution itself, with which writing `started`.
+/// Writes all results but the solution itself, with which writing `started`; of its triangles those that are asked for.
 pub(super) fn write_beside(
     solution: &mut Solution,
+    lit: Option<LitMesh>,
     (folder, started): (&Path, Instant),
     how: &How,
     history: &History,
@@ -217,8 +219,8 @@ pub(super) fn write_beside(
     let before = is_interrupted();
     let wanted = || before || !is_interrupted();
     let mut drawn = false;
-    if !how.formats.0.is_empty() || !how.no_pictures {
-        drawn = write_lit(solution, &solution.lit_mesh(), folder, how, &wanted)?;
+    if let Some(lit) = lit {
+        drawn = write_lit(solution, &lit, folder, how, &wanted)?;
     }
     solution.report.seconds.write = started.elapsed().as_secs_f64();
     solution.report.peak_memory = peak_memory();
@@ -250,9 +252,12 @@ fn write_lit(
         tone: Tone::for_mesh(lit),
         efficacy: WHITE_EFFICACY,
     };
-    for format in &how.formats.0 {
-        exporter.write(*format, &folder.join(mesh_file(*format)))?;
-    }
+    let formats = how.formats.0.par_iter().with_max_len(1);
+    let written: Vec<_> = formats
+        .map(|format| exporter.write(*format, &folder.join(mesh_file(*format))))
+        .collect();
+    // Of several that failed the first.
+    written.into_iter().collect::<Result<(), _>>()?;
     if how.no_pictures {
         return Ok(false);
     }

@@ -1,119 +1,82 @@
 //! From the mesh to conforming triangles: where patches meet, each takes up the vertices that the other has there.
 
+use super::borders::Borders;
 use super::lit_mesh::{LitMesh, LitTriangle, LitVertex};
 use crate::mesh::{Mesh, NONE};
 use crate::radiometry::Spectrum;
 use crate::solver::Light;
-use glam::DVec3;
-use rstar::primitives::GeomWithData;
-use rstar::{AABB, RTree};
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use std::ops::Range;
 
-/// Vertices of different patches closer than this fraction of the scene's extent are one position.
-const WELD: f64 = 1e-7;
+/// About how many vertices patches have that are triangulated together …
+const SHARE: usize = 1 << 12;
 
-type Point = GeomWithData<[f64; 3], u32>;
+/// … and how many such shares are in memory beside what they are added to.
+const ABREAST: usize = 64;
 
-/// Triangulates the leaves of `mesh` with the light on it.
+/// Triangulates the leaves of `mesh`, patch by patch, with the light on it.
 pub(super) fn conform(mesh: &Mesh, light: &Light) -> LitMesh {
     let borders = Borders::new(mesh);
-    let mut builder = Builder {
-        mesh,
-        light,
-        borders: &borders,
-        lit: LitMesh::default(),
-        vertices: FxHashMap::default(),
-        dark: Vec::new(),
+    let positions = borders.positions.par_iter();
+    let mut lit = LitMesh {
+        positions: positions.map(|p| mesh.frame.leave(*p)).collect(),
+        ..LitMesh::default()
     };
-    builder.lit.positions = borders
-        .positions
-        .iter()
-        .map(|p| mesh.frame.leave(*p))
-        .collect();
-    for leaf in mesh.leaves() {
-        builder.add(leaf);
-    }
-    builder.finish()
-}
-
-/// Vertices on the borders of patches, welded.
-struct Borders {
-    /// In the frame.
-    positions: Vec<DVec3>,
-    /// Number of the position of a border vertex.
-    of_vertex: FxHashMap<u32, u32>,
-    tree: RTree<Point>,
-    tolerance: f64,
-}
-
-impl Borders {
-    fn new(mesh: &Mesh) -> Self {
-        let tolerance = WELD * mesh.frame.extent();
-        let on_border = |v: &u32| {
-            let vertex = mesh.vertex(*v);
-            mesh.patch(vertex.patch).on_border(vertex.lattice)
-        };
-        let vertices: Vec<u32> = (0..mesh.vertices.len() as u32).filter(on_border).collect();
-        let all = vertices
-            .iter()
-            .map(|v| Point::new(mesh.position(*v).to_array(), *v))
-            .collect();
-        let close: RTree<Point> = RTree::bulk_load(all);
-        let (mut positions, mut of_vertex) = (Vec::new(), FxHashMap::default());
-        for vertex in vertices {
-            if !of_vertex.contains_key(&vertex) {
-                let position = mesh.position(vertex);
-                for same in close.locate_within_distance(position.to_array(), tolerance * tolerance)
-                {
-                    of_vertex.entry(same.data).or_insert(positions.len() as u32);
-                }
-                positions.push(position);
-            }
-        }
-        let welded = positions
-            .iter()
-            .zip(0..)
-            .map(|(p, number)| Point::new(p.to_array(), number))
-            .collect();
-        Self {
-            positions,
-            of_vertex,
-            tree: RTree::bulk_load(welded),
-            tolerance,
+    for shares in shares(mesh).chunks(ABREAST) {
+        let parts = shares.par_iter().with_max_len(1).map(|patches| {
+            let mut builder = Builder::new(mesh, light, &borders);
+            let leaves = patches.clone().flat_map(|p| mesh.leaves_of(&mesh.patch(p)));
+            leaves.for_each(|leaf| builder.add(leaf));
+            builder.finish()
+        });
+        let parts: Vec<LitMesh> = parts.collect();
+        for part in parts {
+            append(&mut lit, part, borders.positions.len() as u32);
         }
     }
-
-    /// The positions on the open segment from `a` to `b`, in order, with their place on it.
-    fn between(&self, a: DVec3, b: DVec3) -> Vec<(f64, u32)> {
-        let margin = DVec3::splat(self.tolerance);
-        let envelope = AABB::from_corners(
-            (a.min(b) - margin).to_array(),
-            (a.max(b) + margin).to_array(),
-        );
-        let along = b - a;
-        let length = along.length();
-        let place = |point: &Point| {
-            let to = DVec3::from_array(*point.geom()) - a;
-            let place = to.dot(along) / (length * length);
-            let aside = (to - along * place).length();
-            let inside = place * length > 2.0 * self.tolerance
-                && (1.0 - place) * length > 2.0 * self.tolerance;
-            (inside && aside <= self.tolerance).then_some((place, point.data))
-        };
-        let mut found: Vec<_> = self
-            .tree
-            .locate_in_envelope(envelope)
-            .filter_map(place)
-            .collect();
-        found.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-        found
-    }
+    lit
 }
 
+/// All patches, in runs of about as many vertices.
+fn shares(mesh: &Mesh) -> Vec<Range<u32>> {
+    let (mut shares, mut first, mut vertices) = (Vec::new(), 0, 0);
+    for patch in 0..mesh.patches.len() as u32 {
+        vertices += mesh.vertex_count(patch);
+        if vertices >= SHARE {
+            shares.push(first..patch + 1);
+            (first, vertices) = (patch + 1, 0);
+        }
+    }
+    shares.push(first..mesh.patches.len() as u32);
+    shares
+}
+
+/// Adds a part with positions, vertices and triangles of its own; the first `shared` positions are those of all.
+fn append(lit: &mut LitMesh, part: LitMesh, shared: u32) {
+    let own = lit.positions.len() as u32 - shared;
+    let first = lit.vertices.len() as u32;
+    lit.positions.extend(part.positions);
+    lit.vertices.extend(part.vertices.into_iter().map(|vertex| {
+        let is_own = vertex.position >= shared;
+        LitVertex {
+            position: vertex.position + if is_own { own } else { 0 },
+            ..vertex
+        }
+    }));
+    let triangles = part.triangles.into_iter();
+    lit.triangles.extend(triangles.map(|triangle| LitTriangle {
+        vertices: triangle.vertices.map(|v| first + v),
+        ..triangle
+    }));
+}
+
+/// The triangles of some patches.
 struct Builder<'a> {
     mesh: &'a Mesh,
     light: &'a Light,
     borders: &'a Borders,
+    /// Its positions are numbered after those of the borders.
     lit: LitMesh,
     /// Lit vertex of a mesh vertex, or of a patch at a welded position.
     vertices: FxHashMap<Key, u32>,
@@ -127,7 +90,18 @@ enum Key {
     Border { patch: u32, position: u32 },
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    fn new(mesh: &'a Mesh, light: &'a Light, borders: &'a Borders) -> Self {
+        Self {
+            mesh,
+            light,
+            borders,
+            lit: LitMesh::default(),
+            vertices: FxHashMap::default(),
+            dark: Vec::new(),
+        }
+    }
+
     fn add(&mut self, leaf: u32) {
         let of = self.mesh.element(leaf);
         let patch = self.mesh.patch(of.patch);
@@ -185,19 +159,18 @@ impl Builder<'_> {
 
     fn vertex(&mut self, vertex: u32) -> u32 {
         let patch = self.mesh.vertices.patch_of(vertex);
-        let welded = self.borders.of_vertex.get(&vertex);
+        let welded = self.borders.position_of(vertex);
         let key = welded.map_or(Key::Inner(vertex), |position| Key::Border {
             patch,
-            position: *position,
+            position,
         });
         if let Some(known) = self.vertices.get(&key) {
             return *known;
         }
-        let position = welded.copied().unwrap_or_else(|| {
-            self.lit
-                .positions
-                .push(self.mesh.frame.leave(self.mesh.position(vertex)));
-            self.lit.positions.len() as u32 - 1
+        let position = welded.unwrap_or_else(|| {
+            let positions = &mut self.lit.positions;
+            positions.push(self.mesh.frame.leave(self.mesh.position(vertex)));
+            (self.borders.positions.len() + positions.len()) as u32 - 1
         });
         self.insert(
             key,
@@ -231,6 +204,7 @@ impl Builder<'_> {
     }
 
     /// Takes the light from buried vertices that no triangle shares with an open one: nothing arrives there, and only what they emit leaves.
+    /// All triangles of a vertex are here, as they are of its patch.
     fn finish(mut self) -> LitMesh {
         let mut beside_open = vec![false; self.lit.vertices.len()];
         for triangle in &self.lit.triangles {

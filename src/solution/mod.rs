@@ -2,6 +2,7 @@
 //!
 //! Imports `geometry`, `radiometry`, `scene`, `mesh`, and of the solver what a solve leaves behind.
 
+mod borders;
 mod conform;
 mod file;
 mod format_1;
@@ -19,6 +20,7 @@ pub use report::{EngineReport, PowerReport, Report, Seconds, TargetReport};
 use crate::mesh::Mesh;
 use crate::scene::{Camera, Scene};
 use crate::solver::{Course, Light};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// A solved scene: what `solve` leaves and the other commands read back.
@@ -63,6 +65,6 @@ impl Solution {
     /// [`Self::element_error`] for each triangle of `lit`.
     pub fn triangle_errors(&self, lit: &LitMesh) -> Option<Vec<f32>> {
         let error = |triangle: &LitTriangle| Some(self.element_error(triangle.element)? as f32);
-        lit.triangles.iter().map(error).collect()
+        lit.triangles.par_iter().map(error).collect()
     }
 }
