@@ -90,6 +90,7 @@ impl Found {
     }
 
     /// Adds what one ray is enough for, by itself or with others; `key` draws the one that the ray goes to.
+    #[inline(always)]
     pub fn pool(&mut self, contribution: Spectrum, target: Vec3, estimate: f32, key: u32) {
         let measure = contribution.max_element();
         if measure <= 0.0 {

@@ -31,8 +31,9 @@ const FEW: u32 = 8;
 /// Subtrees over more tiles than this are worth a thread.
 const APART: u32 = 1 << 10;
 
-/// A flat triangle or quad that shoots.
+/// A flat triangle or quad that shoots, in one line of the cache.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
 pub struct Tile {
     /// Counter-clockwise seen from the radiating side; a triangle repeats its first corner.
     pub corners: [Vec3; 4],
@@ -147,8 +148,9 @@ struct Node {
     second: u32,
 }
 
-/// What a cluster sends.
+/// What a cluster sends, in two lines of the cache.
 #[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
 struct Sends {
     /// Σ area × mean radiosity of the channels × normal.
     flux: Vec3,

@@ -4,7 +4,7 @@ use super::{Aim, Node, Sends};
 use crate::form_factor::hybrid::Receiver;
 use crate::radiometry::Spectrum;
 use glam::{Vec3, Vec3Swizzles};
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_1_PI, PI};
 
 /// By its size a cluster gains or loses no more than this part: the series does not hold beyond.
 const MOST_GAIN: f32 = 0.5;
@@ -36,9 +36,12 @@ pub(super) fn lanes(mut mask: Mask) -> impl Iterator<Item = usize> {
 /// The points for which `holds`.
 #[inline(always)]
 pub(super) fn mask(holds: impl Fn(usize) -> bool) -> Mask {
-    (0..LANES).fold(0, |mask, lane| {
-        mask | if holds(lane) { 1 << lane } else { 0 }
-    })
+    let mut mask = 0;
+    // No `fold`: that is not always compiled into what calls it, and then not for its instructions.
+    for lane in 0..LANES {
+        mask |= Mask::from(holds(lane)) << lane;
+    }
+    mask
 }
 
 /// Points with their normals, component by component.
@@ -116,10 +119,11 @@ impl Node {
             // Right beside the centre there is no direction; what is that near is opened.
             let away = 1.0 / distance.max(0.01 * self.radius);
             let gap = (distance - self.radius).max(0.0);
+            let nearness = 1.0 / gap;
             // The largest cosines there and here.
-            let facing = ((most[lane] + slack) / gap).min(1.0);
+            let facing = ((most[lane] + slack) * nearness).min(1.0);
             let steepest = ((height[lane] + self.radius) * away).min(1.0);
-            let nearest = self.strength * facing * steepest / (PI * gap * gap);
+            let nearest = self.strength * facing * steepest * FRAC_1_PI * nearness * nearness;
             let size = self.radius * away;
             // What is inside a sphere fills no more of a cosine-weighted hemisphere than the sphere does.
             let fill = (size * size).min(1.0) * (2.0 * steepest).min(1.0);
@@ -162,18 +166,18 @@ impl Sends {
         for (lane, arriving) in arriving.iter_mut().enumerate() {
             let (to, normal) = (of.to(self.centre, lane), of.normal(lane));
             // Nearer than this it is opened, whatever this says.
-            let square = to.length_squared().max(radius * radius);
+            let nearness = 1.0 / to.length_squared().max(radius * radius);
             let (a, b) = (-self.flux.dot(to), normal.dot(to));
             let (of_normal, of_to) = (times(normal), times(to));
             let (turn_normal, turn_to) = (self.turn * normal, self.turn * to);
-            let turned = b * turn + to.dot(turn_normal) - 4.0 * b * to.dot(turn_to) / square;
+            let turned = b * turn + to.dot(turn_normal) - 4.0 * b * to.dot(turn_to) * nearness;
             let change = -self.flux.dot(of_normal)
-                - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) / square
-                + a * b * (12.0 * to.dot(of_to) / square - 2.0 * trace) / square
+                - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) * nearness
+                + a * b * (12.0 * to.dot(of_to) * nearness - 2.0 * trace) * nearness
                 - turned;
             let plain = (a * b).max(0.0);
             let change = change.max(-MOST_GAIN * plain).min(MOST_GAIN * plain);
-            *arriving = (plain + change) / (PI * square * square);
+            *arriving = (plain + change) * FRAC_1_PI * nearness * nearness;
         }
         arriving
     }

@@ -100,6 +100,10 @@ impl Walk<'_> {
         let next = self.pending.pop()?;
         if let Cluster::Node(number) = next.0 {
             prefetch(&self.clusters.sends[number as usize]);
+            // The first child, unless it is a tile.
+            if let Some(child) = self.clusters.nodes.get(number as usize + 1) {
+                prefetch(child);
+            }
         }
         match self.pending.last() {
             Some((Cluster::Node(after), _)) => prefetch(&self.clusters.nodes[*after as usize]),
@@ -249,6 +253,7 @@ impl Walk<'_> {
         }
     }
 
+    #[inline(always)]
     fn pool(&mut self, lane: usize, contribution: Spectrum, target: Vec3, limits: &Limits) {
         let (estimate, key) = (limits.estimate[lane], self.receivers[lane].1);
         self.points[lane].pool(contribution, target, estimate, key);
