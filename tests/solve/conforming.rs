@@ -1,6 +1,6 @@
 //! The exported triangles conform: no T-junctions and no cracks, neither inside a patch nor where patches meet.
 
-use super::{bundled, draft, solved};
+use super::{Preset, bundled, by_preset, draft, solved};
 use glam::DVec3;
 use radiosity::scene::Scene;
 use radiosity::solution::LitMesh;
@@ -130,4 +130,18 @@ fn geometry() {
 #[test]
 fn shadow() {
     assert_conforming("shadow");
+}
+
+#[test]
+fn triangles_are_the_same_on_any_number_of_threads() {
+    let solution = by_preset("shadow", Preset::Standard);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads start").install(|| solution.lit_mesh())
+    };
+    let (one, three) = (on(1), on(3));
+    assert!(one.triangles.len() > 50_000, "{}", one.triangles.len());
+    assert_eq!(one.positions, three.positions);
+    assert_eq!(one.vertices, three.vertices);
+    assert_eq!(one.triangles, three.triangles);
 }
