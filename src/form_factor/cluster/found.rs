@@ -55,6 +55,8 @@ pub(super) struct Found {
     parts: Vec<Part>,
     /// Of the rays of all parts, in their order.
     targets: Vec<Vec3>,
+    /// For each of these, what part of its part arrives with it.
+    shares: Vec<f32>,
     pool: Pool,
     loose: Loose,
     /// What is still to be drawn from.
@@ -65,6 +67,7 @@ impl Found {
     pub fn clear(&mut self) {
         self.parts.clear();
         self.targets.clear();
+        self.shares.clear();
         self.pool = Pool::default();
         self.loose = Loose::default();
         self.drawn.clear();
@@ -79,13 +82,29 @@ impl Found {
         &self.targets
     }
 
-    /// Adds a part with a ray to each target.
-    pub fn push(&mut self, contribution: Spectrum, targets: impl Iterator<Item = Vec3>) {
+    /// Adds a part with one ray.
+    pub fn push(&mut self, contribution: Spectrum, target: Vec3) {
+        self.push_all(contribution, std::iter::once((target, 1.0)));
+    }
+
+    /// Adds a part with a ray to each target; what arrives with each is in proportion to the number beside it.
+    pub fn push_all(&mut self, contribution: Spectrum, targets: impl Iterator<Item = (Vec3, f32)>) {
         let before = self.targets.len();
-        self.targets.extend(targets);
+        for (target, share) in targets {
+            self.targets.push(target);
+            self.shares.push(share);
+        }
+        let shares = &mut self.shares[before..];
+        let all: f32 = shares.iter().sum();
+        if all > 0.0 && all.is_finite() {
+            shares.iter_mut().for_each(|share| *share /= all);
+        } else {
+            let even = 1.0 / shares.len() as f32;
+            shares.fill(even);
+        }
         self.parts.push(Part {
             contribution,
-            rays: (self.targets.len() - before) as u32,
+            rays: shares.len() as u32,
         });
     }
 
@@ -112,7 +131,7 @@ impl Found {
     pub fn empty_pool(&mut self) {
         let pool = std::mem::take(&mut self.pool);
         if pool.draws > 0 {
-            self.push(pool.contribution, std::iter::once(pool.target));
+            self.push(pool.contribution, pool.target);
         }
     }
 
@@ -155,7 +174,7 @@ impl Found {
         clusters.draw(&drawn, key, |of, aim| {
             let contribution = given(of, &aim);
             if contribution.max_element() > 0.0 {
-                self.push(contribution, std::iter::once(aim.target));
+                self.push(contribution, aim.target);
             }
         });
         drawn.clear();
@@ -166,17 +185,22 @@ impl Found {
     pub fn sum(&self, masks: &mut impl Iterator<Item = u64>) -> Gather {
         let mut gather = Gather::default();
         let (mut mask, mut bit) = (0, MAX_FAN);
+        let mut shares = self.shares.iter();
         for part in &self.parts {
-            let mut seen = 0;
-            for _ in 0..part.rays {
+            let (mut seen, mut hidden) = (0.0, false);
+            for share in shares.by_ref().take(part.rays as usize) {
                 if bit == MAX_FAN {
                     (mask, bit) = (masks.next().expect("a mask for each fan"), 0);
                 }
-                seen += u32::from(mask >> bit & 1 == 0);
+                match mask >> bit & 1 {
+                    0 => seen += share,
+                    _ => hidden = true,
+                }
                 bit += 1;
             }
             gather.unoccluded += part.contribution;
-            gather.irradiance += part.contribution * (seen as f32 / part.rays as f32);
+            // All of it to the last bit, where all is seen.
+            gather.irradiance += part.contribution * if hidden { seen } else { 1.0 };
         }
         let all = gather.unoccluded.element_sum();
         gather.visibility = (all > 0.0).then(|| gather.irradiance.element_sum() / all);

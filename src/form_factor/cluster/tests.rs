@@ -81,14 +81,26 @@ fn gathered(
 
 fn gathered_with(
     isa: Isa,
+    sending: (&[Tile], Vec<Spectrum>),
+    receivers: &[(Receiver, u32)],
+    threshold: f64,
+    settled: bool,
+) -> Vec<Gather> {
+    let nothing = Triangles::default();
+    gathered_behind(&nothing, isa, sending, receivers, threshold, settled)
+}
+
+fn gathered_behind(
+    occluders: &Triangles,
+    isa: Isa,
     (tiles, radiosities): (&[Tile], Vec<Spectrum>),
     receivers: &[(Receiver, u32)],
     threshold: f64,
     settled: bool,
 ) -> Vec<Gather> {
-    let nothing = BruteForce::new(&Triangles::default()).expect("no triangle is a sound scene");
+    let visibility = BruteForce::new(occluders).expect("a sound scene");
     let sampler = Sampler {
-        visibility: &nothing,
+        visibility: &visibility,
         extent: 5.0,
         formula: Formula::Hybrid(5.0),
         thresholds: SourceThresholds {
@@ -289,4 +301,36 @@ fn assert_closed((tiles, receivers): (Vec<Tile>, Vec<(Receiver, u32)>)) {
             );
         }
     }
+}
+
+/// Of a tile whose far half is covered a near point sees more than half.
+#[test]
+fn what_is_hidden_of_a_tile_counts_by_how_it_is_seen() {
+    let square = |low: f64| {
+        let [a, b] = [low, 1.0].map(|x| [0.0, 1.0].map(|y| DVec3::new(x, y, 0.0)));
+        [a[0], b[0], b[1], a[1]]
+    };
+    let tile = Tile::new(&square(0.0), DVec3::Z, false);
+    let cover = square(0.5).map(|corner| corner.as_vec3() + 0.001 * Vec3::Z);
+    let cover = Triangles {
+        vertices: cover.to_vec(),
+        indices: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let point = DVec3::new(0.1, 0.5, 0.4);
+    let receiver = Receiver {
+        point,
+        normal: -DVec3::Z,
+        irradiance: 1.0,
+    };
+    let seen = [0.0, 0.5].map(|x| square(x).map(|corner| corner - point));
+    let [all, covered] = seen.map(|of| point_to_visible_polygon(receiver.normal, &of).0);
+    let sending = (&[tile][..], vec![Spectrum::ONE]);
+    let receivers: Vec<_> = (0..100).map(|key| (receiver, key)).collect();
+    let isa = Isa::widest();
+    let gathers = gathered_behind(&cover, isa, sending, &receivers, 1e-3, true);
+    let found = gathers.iter().map(|g| f64::from(g.irradiance.x));
+    let found = found.sum::<f64>() / gathers.len() as f64;
+    assert!(all - covered > 0.85 * all, "{covered} of {all}");
+    let off = found / (all - covered) - 1.0;
+    assert!(off.abs() < 0.02, "{found} instead of {}", all - covered);
 }

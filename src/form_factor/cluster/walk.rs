@@ -352,7 +352,15 @@ impl Walk<'_> {
         if side == 1 {
             self.pool(lane, contribution, aim(0), limits);
         } else {
-            self.points[lane].push(contribution, (0..side * side).map(aim));
+            // What is near counts more of a tile that is hidden in part.
+            let kernel = |target: Vec3| {
+                let to = target - receiver.point.as_vec3();
+                let (a, b) = (-tile.normal.dot(to), receiver.normal.as_vec3().dot(to));
+                (a * b).max(0.0) / to.length_squared().powi(2)
+            };
+            let targets = (0..side * side).map(aim);
+            let shares = targets.map(|target| (target, kernel(target)));
+            self.points[lane].push_all(contribution, shares);
         }
     }
 }
