@@ -69,6 +69,8 @@ impl Session<'_> {
     /// The same, before an audience. What it sees does not change what is computed.
     pub fn finish(&self, mut run: Run, audience: Option<&dyn Audience>) -> Result<Code, CliError> {
         run.reserve(self.pictures(run.solution()))?;
+        // Before the solve, whose result would be lost if they could not be started.
+        let pool = pool(self.how.threads).map_err(SolveError::from)?;
         let mut watch = Watch::new(run.solution().report.options.tolerance, self.how.progress);
         self.solve(&mut run, &mut watch, audience)?;
         let set_aside = run.set_aside();
@@ -80,7 +82,6 @@ impl Session<'_> {
         present(audience, &solution);
         self.warn(&solution);
         let started = Instant::now();
-        let pool = pool(self.how.threads).map_err(SolveError::from)?;
         // The solution is written by one thread; others make triangles of it meanwhile.
         let file = self.output.join(SOLUTION);
         let (written, lit) = pool.install(|| {

@@ -97,6 +97,7 @@ pub use error::SceneError;
 pub(crate) use load::geometry_of;
 pub use names::{NamedScene, Names};
 pub use summary::{MaterialSummary, Summary};
+pub(crate) use weld::Welder;
 
 use crate::geometry::Frame;
 use crate::radiometry::Spectrum;

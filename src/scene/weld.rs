@@ -10,7 +10,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 /// Gives each distinct position an index, in the order of first appearance.
 #[derive(Default)]
-pub(super) struct Welder {
+pub(crate) struct Welder {
     indices: HashMap<[u64; 3], u32, BuildHasherDefault<MixingHasher>>,
     positions: Vec<DVec3>,
 }

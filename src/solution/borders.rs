@@ -1,11 +1,11 @@
 //! Where the borders of patches meet: their vertices, welded to shared positions.
 
 use crate::mesh::{Mesh, NONE};
+use crate::scene::Welder;
 use glam::DVec3;
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
-use rustc_hash::FxHashMap;
 
 /// Vertices of different patches closer than this fraction of the scene's extent are one position.
 const WELD: f64 = 1e-7;
@@ -35,16 +35,12 @@ impl Borders {
         let vertices = (0..mesh.vertices.len() as u32).into_par_iter();
         let vertices: Vec<_> = vertices.filter_map(on_border).collect();
         // Nearly all that meet do so to the last bit: a tree of their places alone is a fraction of one of the vertices.
-        let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-        let (mut of_vertex, mut places) = (vec![NONE; mesh.vertices.len()], Vec::new());
+        let mut welder = Welder::default();
+        let mut of_vertex = vec![NONE; mesh.vertices.len()];
         for (vertex, place) in vertices {
-            let bits = place.to_array().map(f64::to_bits);
-            of_vertex[vertex as usize] = *numbers.entry(bits).or_insert_with(|| {
-                places.push(place);
-                places.len() as u32 - 1
-            });
+            of_vertex[vertex as usize] = welder.index(place);
         }
-        drop(numbers);
+        let places = welder.into_positions();
         let numbered = places.iter().zip(0..);
         let numbered = numbered.map(|(place, n)| Place::new(place.to_array(), n));
         let mut tree = RTree::bulk_load(numbered.collect());
