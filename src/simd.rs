@@ -23,8 +23,8 @@ pub trait Kernel {
     /// What it gives.
     type Output;
 
-    /// To be marked `#[inline(always)]`, and so all that it calls in its inner loops.
-    fn run(self) -> Self::Output;
+    /// To be marked `#[inline(always)]`, and so all that it calls in its inner loops. An instruction takes `WIDTH` numbers in single precision.
+    fn run<const WIDTH: usize>(self) -> Self::Output;
 }
 
 impl Default for Isa {
@@ -75,7 +75,7 @@ impl Isa {
     /// Runs `kernel`, compiled for this instruction set if the processor has it.
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => kernel.run(),
+            Self::Portable => kernel.run::<4>(),
             // SAFETY: the processor has the instructions. Anyone can write `Isa::Avx2`, but only this crate can name a `Kernel`, and runs
             // its own by `Scratch::isa` and `ClusterScratch::isa`: the widest set of those found, which nobody outside can replace.
             #[cfg(target_arch = "x86_64")]
@@ -107,11 +107,11 @@ pub fn prefetch<T: ?Sized>(of: &T) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run()
+    kernel.run::<8>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
 fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run()
+    kernel.run::<16>()
 }

@@ -96,7 +96,7 @@ impl Kernel for Partition<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<const WIDTH: usize>(self) {
         let Scratch {
             leaves, pending, ..
         } = self.scratch;
@@ -119,7 +119,7 @@ impl Kernel for Splitting<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<const WIDTH: usize>(self) {
         let Scratch {
             leaves,
             fresh,

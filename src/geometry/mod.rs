@@ -1,10 +1,12 @@
 //! Points, polygons and the frame in which a scene is solved. Imports nothing of ours.
 
+mod curve;
 mod frame;
 mod jitter;
 pub mod polygon;
 mod sets;
 
+pub use curve::along_curve;
 pub use frame::Frame;
 pub use jitter::jitter;
 pub use sets::Sets;

@@ -5,6 +5,7 @@ use super::fineness::{halved, halvings, most_halvings};
 use super::light::{Light, Sign};
 use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
+use crate::geometry::{along_curve, facing};
 use crate::mesh::{Mesh, Patch};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -38,12 +39,49 @@ pub(super) struct Beam<'a> {
     pub sign: Sign,
 }
 
-/// Evaluates `shooter` at each point (neighbours should follow one another, so that their rays share packets); one result a point, and the number of rays. The same for any number of threads:
-/// blocks depend on the list alone and no result on another.
+/// Evaluates `shooter` at each point (of what shoots alone neighbours should follow one another, so that their rays share packets); one result a
+/// point, and the number of rays. The same for any number of threads: blocks depend on the list alone.
 pub(super) fn evaluate(
     sampler: &Sampler,
     shooter: &Shooter,
     points: &[(Receiver, u32)],
+) -> (Vec<Gather>, u64) {
+    match shooter {
+        Shooter::Patch(source) => in_blocks(points, |points, gathers| {
+            SCRATCH.with_borrow_mut(|scratch| sampler.gather(source, points, scratch, gathers))
+        }),
+        Shooter::All { tiling, settled } => {
+            let order = side_by_side(points, sampler.extent);
+            let ordered: Vec<_> = order.iter().map(|n| points[*n as usize]).collect();
+            let (found, rays) = in_blocks(&ordered, |points, gathers| {
+                CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
+                    sampler.gather_clusters(&tiling.clusters, points, *settled, scratch, gathers)
+                })
+            });
+            let mut gathers = vec![Gather::default(); points.len()];
+            for (n, gather) in order.into_iter().zip(found) {
+                gathers[n as usize] = gather;
+            }
+            (gathers, rays)
+        }
+    }
+}
+
+/// The points in an order in which those go through the clusters together that take much the same way: who face alike, along a curve through
+/// space.
+fn side_by_side(points: &[(Receiver, u32)], extent: f64) -> Vec<u32> {
+    let points = points.par_iter().enumerate().with_min_len(1024);
+    let mut keyed: Vec<(usize, u64, u32)> = points
+        .map(|(n, (of, _))| (facing(of.normal), along_curve(of.point / extent), n as u32))
+        .collect();
+    keyed.par_sort_unstable();
+    keyed.into_iter().map(|(_, _, n)| n).collect()
+}
+
+/// What `evaluated` says of all points, block by block.
+fn in_blocks(
+    points: &[(Receiver, u32)],
+    evaluated: impl Fn(&[(Receiver, u32)], &mut [Gather]) -> u64 + Sync,
 ) -> (Vec<Gather>, u64) {
     let block = (points.len() / SHARES).clamp(LEAST_BLOCK, BLOCK);
     let mut gathers = vec![Gather::default(); points.len()];
@@ -51,14 +89,7 @@ pub(super) fn evaluate(
     let blocks = points.par_chunks(block).zip(gathers.par_chunks_mut(block));
     let rays = blocks
         .with_max_len(1)
-        .map(|(points, gathers)| match shooter {
-            Shooter::Patch(source) => {
-                SCRATCH.with_borrow_mut(|scratch| sampler.gather(source, points, scratch, gathers))
-            }
-            Shooter::All { tiling, settled } => CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
-                sampler.gather_clusters(&tiling.clusters, points, *settled, scratch, gathers)
-            }),
-        });
+        .map(|(points, gathers)| evaluated(points, gathers));
     let rays = rays.sum();
     (gathers, rays)
 }

@@ -44,6 +44,12 @@ pub(super) fn mask(holds: impl Fn(usize) -> bool) -> Mask {
     mask
 }
 
+/// Whether any of `WIDTH` points from the `first` on is in a mask: what an instruction does for one of them it does for all.
+#[inline(always)]
+const fn is_any<const WIDTH: usize>(of: Mask, first: usize) -> bool {
+    of >> first & (Mask::MAX >> (Mask::BITS - WIDTH as u32)) != 0
+}
+
 /// Points with their normals, component by component.
 pub(super) struct Rows {
     point: [Row; 3],
@@ -90,9 +96,9 @@ pub(super) struct Views {
 }
 
 impl Node {
-    /// What points see of it.
+    /// What those points that are `asking` see of it; no higher than a `hair` above its tiles they see nothing.
     #[inline(always)]
-    pub(super) fn views(&self, of: &Rows, hair: f32) -> Views {
+    pub(super) fn views<const WIDTH: usize>(&self, of: &Rows, hair: f32, asking: Mask) -> Views {
         let mut views = Views {
             seen: 0,
             whole: 0,
@@ -102,35 +108,41 @@ impl Node {
         let (mut height, mut most, mut least) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (cosine, sine) = self.cone;
         let slack = self.thickness + self.radius * sine;
-        for lane in 0..LANES {
-            let to = of.to(self.centre, lane);
-            height[lane] = of.normal(lane).dot(to);
-            let square = to.length_squared();
-            let distance = square.sqrt();
-            // How far in front of the planes of its tiles the point is, at most and at least.
-            let along = -self.axis.dot(to);
-            let across = (square - along * along).max(0.0).sqrt();
-            most[lane] = if along >= distance * cosine {
-                distance
-            } else {
-                along * cosine + across * sine
-            };
-            least[lane] = along * cosine - across * sine - slack;
-            // Right beside the centre there is no direction; what is that near is opened.
-            let away = 1.0 / distance.max(0.01 * self.radius);
-            let gap = (distance - self.radius).max(0.0);
-            let nearness = 1.0 / gap;
-            // The largest cosines there and here.
-            let facing = ((most[lane] + slack) * nearness).min(1.0);
-            let steepest = ((height[lane] + self.radius) * away).min(1.0);
-            let nearest = self.strength * facing * steepest * FRAC_1_PI * nearness * nearness;
-            let size = self.radius * away;
-            // What is inside a sphere fills no more of a cosine-weighted hemisphere than the sphere does.
-            let fill = (size * size).min(1.0) * (2.0 * steepest).min(1.0);
-            views.bound[lane] = nearest.min(self.peak * fill);
-            views.size[lane] = size;
+        for first in (0..LANES).step_by(WIDTH) {
+            if !is_any::<WIDTH>(asking, first) {
+                continue;
+            }
+            for lane in first..first + WIDTH {
+                let to = of.to(self.centre, lane);
+                height[lane] = of.normal(lane).dot(to);
+                let square = to.length_squared();
+                let distance = square.sqrt();
+                // How far in front of the planes of its tiles the point is, at most and at least.
+                let along = -self.axis.dot(to);
+                let across = (square - along * along).max(0.0).sqrt();
+                most[lane] = if along >= distance * cosine {
+                    distance
+                } else {
+                    along * cosine + across * sine
+                };
+                least[lane] = along * cosine - across * sine - slack;
+                // Right beside the centre there is no direction; what is that near is opened.
+                let away = 1.0 / distance.max(0.01 * self.radius);
+                let gap = (distance - self.radius).max(0.0);
+                let nearness = 1.0 / gap;
+                // The largest cosines there and here.
+                let facing = ((most[lane] + slack) * nearness).min(1.0);
+                let steepest = ((height[lane] + self.radius) * away).min(1.0);
+                let nearest = self.strength * facing * steepest * FRAC_1_PI * nearness * nearness;
+                let size = self.radius * away;
+                // What is inside a sphere fills no more of a cosine-weighted hemisphere than the sphere does.
+                let fill = (size * size).min(1.0) * (2.0 * steepest).min(1.0);
+                views.bound[lane] = nearest.min(self.peak * fill);
+                views.size[lane] = size;
+            }
         }
         views.seen = mask(|lane| (height[lane] > -self.radius) & (most[lane] + slack > hair));
+        views.seen &= asking;
         views.whole = mask(|lane| (least[lane] >= 0.0) & (height[lane] >= self.radius));
         views
     }
@@ -151,33 +163,39 @@ impl Sends {
         self.colour * (self.weight * a * b / (PI * square * square)).min(most)
     }
 
-    /// What arrives, mean of the channels, at points that see the whole of a cluster: the kernel (P·x)(n·x)/π r⁴ at the centre,
+    /// What arrives, mean of the channels, at those points that are `asking`, who see the whole of a cluster: the kernel (P·x)(n·x)/π r⁴ at the centre,
     /// and its terms of second order: for the covariance M of the sources
     /// ½ M:∇∇ = (PMn - 4 (b PMx + a nMx)/r² + ab (12 xMx/r² - 2 tr M)/r²) / π r⁴ with a = P·x and b = n·x, of which for a disk on the axis
     /// Eq. (1) begins; and for the way T in which their normals turn (b tr T + xTn - 4 b xTx/r²) / π r⁴. Without that one all that is seen of a
     /// sphere from inside was 2 to 3 % too dark.
     #[inline(always)]
-    pub(super) fn arriving(&self, of: &Rows, radius: f32) -> Row {
+    pub(super) fn arriving<const WIDTH: usize>(&self, of: &Rows, radius: f32, asking: Mask) -> Row {
         let [diagonal, mixed] = self.spread;
         let times = |v: Vec3| diagonal * v + mixed.zxy() * v.yzx() + mixed.yzx() * v.zxy();
+        let spread_flux = times(self.flux);
         let trace = diagonal.element_sum();
         let turn = self.turn.x_axis.x + self.turn.y_axis.y + self.turn.z_axis.z;
+        let turned = self.turn.transpose();
         let mut arriving = [0.0; LANES];
-        for (lane, arriving) in arriving.iter_mut().enumerate() {
-            let (to, normal) = (of.to(self.centre, lane), of.normal(lane));
-            // Nearer than this it is opened, whatever this says.
-            let nearness = 1.0 / to.length_squared().max(radius * radius);
-            let (a, b) = (-self.flux.dot(to), normal.dot(to));
-            let (of_normal, of_to) = (times(normal), times(to));
-            let (turn_normal, turn_to) = (self.turn * normal, self.turn * to);
-            let turned = b * turn + to.dot(turn_normal) - 4.0 * b * to.dot(turn_to) * nearness;
-            let change = -self.flux.dot(of_normal)
-                - 4.0 * (a * normal.dot(of_to) - b * self.flux.dot(of_to)) * nearness
-                + a * b * (12.0 * to.dot(of_to) * nearness - 2.0 * trace) * nearness
-                - turned;
-            let plain = (a * b).max(0.0);
-            let change = change.max(-MOST_GAIN * plain).min(MOST_GAIN * plain);
-            *arriving = (plain + change) * FRAC_1_PI * nearness * nearness;
+        for first in (0..LANES).step_by(WIDTH) {
+            if !is_any::<WIDTH>(asking, first) {
+                continue;
+            }
+            for (lane, arriving) in (first..).zip(&mut arriving[first..first + WIDTH]) {
+                let (to, normal) = (of.to(self.centre, lane), of.normal(lane));
+                // Nearer than this it is opened, whatever this says.
+                let nearness = 1.0 / to.length_squared().max(radius * radius);
+                let (a, b) = (-self.flux.dot(to), normal.dot(to));
+                let (of_to, turned_to) = (times(to), turned * to);
+                // What is in proportion to n, and to b.
+                let by_normal = spread_flux + 4.0 * a * nearness * of_to + turned_to;
+                let by_height = 4.0 * (spread_flux + turned_to).dot(to)
+                    + a * (12.0 * to.dot(of_to) * nearness - 2.0 * trace);
+                let change = b * (by_height * nearness - turn) - normal.dot(by_normal);
+                let plain = (a * b).max(0.0);
+                let change = change.max(-MOST_GAIN * plain).min(MOST_GAIN * plain);
+                *arriving = (plain + change) * FRAC_1_PI * nearness * nearness;
+            }
         }
         arriving
     }

@@ -64,18 +64,18 @@ impl Kernel for Walk<'_> {
 
     /// Finds the parts of all points.
     #[inline(always)]
-    fn run(mut self) {
+    fn run<const WIDTH: usize>(mut self) {
         let rows = Rows::new(self.receivers);
         let all = Mask::MAX >> (Mask::BITS - self.receivers.len() as u32);
-        let mut limits = self.limits(&rows, all);
+        let mut limits = self.limits::<WIDTH>(&rows, all);
         self.points.iter_mut().for_each(Found::clear);
         self.begin(all);
         while let Some((cluster, asking)) = self.next() {
             let node = self.clusters.node(cluster);
-            let Some(views) = self.views(&node, &rows, asking) else {
+            let Some(views) = self.views::<WIDTH>(&node, &rows, asking) else {
                 continue;
             };
-            let opened = self.take(cluster, &node, &views, (&rows, &limits));
+            let opened = self.take::<WIDTH>(cluster, &node, &views, (&rows, &limits));
             self.open(cluster, &node, opened, &mut limits);
         }
         for lane in lanes(all) {
@@ -116,7 +116,7 @@ impl Walk<'_> {
     /// Takes a cluster by all that see any of it: those for whom it is fine take all of it at once, those of whom hardly anything can arrive
     /// from it a part. Gives those who open it.
     #[inline(always)]
-    fn take(
+    fn take<const WIDTH: usize>(
         &mut self,
         cluster: Cluster,
         node: &Node,
@@ -136,7 +136,7 @@ impl Walk<'_> {
         let mut whole = (slight | small) & seen & whole;
         if whole != 0 {
             let sends = self.clusters.sends(cluster);
-            let arriving = sends.arriving(rows, node.radius);
+            let arriving = sends.arriving::<WIDTH>(rows, node.radius, whole);
             let strongest = sends.colour.max_element();
             let is_fine = |l: usize| {
                 let measure = arriving[l] * strongest;
@@ -157,26 +157,25 @@ impl Walk<'_> {
 
     /// What those who ask see of a cluster, if any sees any of it.
     #[inline(always)]
-    fn views(&self, node: &Node, rows: &Rows, asking: Mask) -> Option<Views> {
+    fn views<const WIDTH: usize>(&self, node: &Node, rows: &Rows, asking: Mask) -> Option<Views> {
         if node.strength <= 0.0 {
             return None;
         }
         // Points no higher than a hair above a cluster lie in its plane, up to rounding.
         let hair = 0.1 * self.clusters.offset;
-        let mut views = node.views(rows, hair);
-        views.seen &= asking;
+        let views = node.views::<WIDTH>(rows, hair, asking);
         (views.seen != 0).then_some(views)
     }
 
     #[inline(always)]
-    fn limits(&mut self, rows: &Rows, all: Mask) -> Limits {
+    fn limits<const WIDTH: usize>(&mut self, rows: &Rows, all: Mask) -> Limits {
         let mut known = [0.0; LANES];
         for (known, (receiver, _)) in known.iter_mut().zip(self.receivers) {
             *known = receiver.irradiance;
         }
         let unknown = all & mask(|l| known[l] <= 0.0);
         if unknown != 0 {
-            let expected = self.expected(rows, unknown);
+            let expected = self.expected::<WIDTH>(rows, unknown);
             lanes(unknown).for_each(|lane| known[lane] = expected[lane].max_element());
         }
         let thresholds = &self.sampler.thresholds;
@@ -191,12 +190,12 @@ impl Walk<'_> {
 
     /// About what points would get were nothing in between.
     #[inline(always)]
-    fn expected(&mut self, rows: &Rows, all: Mask) -> [Spectrum; LANES] {
+    fn expected<const WIDTH: usize>(&mut self, rows: &Rows, all: Mask) -> [Spectrum; LANES] {
         let mut sum = [Spectrum::ZERO; LANES];
         self.begin(all);
         while let Some((cluster, asking)) = self.next() {
             let node = self.clusters.node(cluster);
-            let Some(views) = self.views(&node, rows, asking) else {
+            let Some(views) = self.views::<WIDTH>(&node, rows, asking) else {
                 continue;
             };
             let large = mask(|l| views.size[l] > GUESS);
@@ -206,11 +205,12 @@ impl Walk<'_> {
             };
             let taken = views.seen & !opened;
             let sends = self.clusters.sends(cluster);
-            if taken & views.whole != 0 {
-                let arriving = sends.arriving(rows, node.radius);
-                lanes(taken & views.whole).for_each(|l| sum[l] += sends.colour * arriving[l]);
+            let whole = taken & views.whole;
+            if whole != 0 {
+                let arriving = sends.arriving::<WIDTH>(rows, node.radius, whole);
+                lanes(whole).for_each(|l| sum[l] += sends.colour * arriving[l]);
             }
-            for lane in lanes(taken & !views.whole) {
+            for lane in lanes(taken & !whole) {
                 sum[lane] += sends.drawn(&sends.aim, rows, lane, views.bound[lane]);
             }
         }
