@@ -62,7 +62,7 @@ impl Mesh {
     fn weld(&mut self) {
         let mut joined = Sets::new(self.vertices.len());
         let sides = Sides::new(self, |patch, side| patch.side_key(side).0);
-        let shared = sides.list.par_chunk_by(|a, b| sides.are_one(a, b));
+        let shared = sides.list.par_chunk_by(|_, side| side.is_one_with_last);
         let ends = shared.flat_map_iter(|sides| self.smooth_ends(sides));
         let ends: Vec<[u32; 2]> = ends.collect();
         drop(sides);

@@ -7,17 +7,19 @@
 //! cuts off the tops (`mesh/integral.rs`). Of an error that differs from place to place and is reflected back to where it came from,
 //! as in a gap between bright walls, what is seen is what one reflection loses of it: the estimate is too low there.
 
+use super::course::Stage;
 use super::error::{ErrorModel, Squares};
 use super::light::{Light, Sign};
 use super::run::Solver;
 use super::shoot::{Shooter, evaluate};
-use super::sums::in_blocks;
+use super::sums::{in_blocks, in_order};
 use super::tiling::Tiling;
 use crate::form_factor::{Formula, Receiver, Sampler, Source};
 use crate::geometry::jitter;
 use crate::mesh::Mesh;
 use crate::radiometry::{Power, Spectrum};
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// How much finer the thresholds ε_fe and ε_fd of the second look are.
@@ -109,9 +111,9 @@ impl Solver<'_> {
         } else {
             self.second_look(&whole, (&fine, &plain), &receivers)
         };
-        let leaving: Power = (0..self.mesh.patches.len())
-            .map(|patch| whole.unshot_power(&self.mesh, patch, Sign::Positive))
-            .sum();
+        let mut leaving = Power::ZERO;
+        let of_patch = |patch| whole.unshot_power(&self.mesh, patch, Sign::Positive);
+        in_order(self.mesh.patches.len(), of_patch, |power| leaving += power);
         let count = 3.0 * places.len() as f64;
         let mean = gathered.iter().sum::<Power>().element_sum() / count;
         let errors = || known.iter().zip(&gathered).map(|(k, g)| k.as_dvec3() - *g);
@@ -213,8 +215,12 @@ impl Solver<'_> {
         (fine, plain): (&Sampler, &Sampler),
         receivers: &[(Receiver, u32)],
     ) -> (Vec<Power>, Vec<f64>) {
-        let how = (&self.options, fine.thresholds.scale);
-        let mut shooter = Tiling::radiating(&self.mesh, whole, how);
+        let tiling = match (&self.course.stage, self.radiated.take()) {
+            // Where light differs it does so much as when it was gathered, for which these tiles were cut.
+            (Stage::Finished, Some(Shooter::All { tiling, .. })) => tiling,
+            _ => Tiling::even(&self.mesh, whole, (&self.options, fine.thresholds.scale)),
+        };
+        let mut shooter = tiling.radiating(&self.mesh, whole);
         let gathered = evaluate(fine, &shooter, receivers).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
             let even = Spectrum::splat(self.reference as f32);
@@ -256,8 +262,11 @@ struct Triangle {
 
 /// All of which no corner is buried.
 fn open_fans(mesh: &Mesh) -> Vec<Triangle> {
-    mesh.leaves()
-        .flat_map(|leaf| mesh.fan(leaf).map(move |corners| (leaf, corners)))
+    let leaves: Vec<u32> = mesh.leaves().collect();
+    leaves
+        .into_par_iter()
+        .with_min_len(1024)
+        .flat_map_iter(|leaf| mesh.fan(leaf).map(move |corners| (leaf, corners)))
         .filter(|(_, corners)| corners.iter().all(|v| !mesh.buried[*v as usize]))
         .map(|(leaf, corners)| {
             let [a, b, c] = corners.map(|v| mesh.position(v));

@@ -56,7 +56,8 @@ mod tests {
         let (mesh, light) = (&solver.mesh, &solver.light);
         let sampler = solver.sampler();
         let whole = solver.whole(Spectrum::ONE);
-        let shooter = Tiling::radiating(mesh, &whole, (&options, sampler.thresholds.scale));
+        let tiling = Tiling::even(mesh, &whole, (&options, sampler.thresholds.scale));
+        let shooter = tiling.radiating(mesh, &whole);
         let found = |factor: f64, side: f64| {
             let sampler = Sampler {
                 thresholds: sampler.thresholds.scaled(factor),

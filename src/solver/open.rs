@@ -61,7 +61,7 @@ impl<'a> OpenLight<'a> {
         });
         let shooter = || {
             let scale = options.source_thresholds(reference).scale;
-            Tiling::radiating(mesh, &whole, (options, scale))
+            Tiling::even(mesh, &whole, (options, scale)).radiating(mesh, &whole)
         };
         let clusters = options.clusters(mesh).then(shooter);
         Self {

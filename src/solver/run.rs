@@ -33,7 +33,7 @@ pub struct Solver<'a> {
     pub(super) behind: Surfaces<'a>,
     /// The tiles of a scene of many patches, while they do not shoot.
     pub(super) tiling: Option<Tiling>,
-    /// … and while they do.
+    /// … and while they do, or have done so for the last time.
     pub(super) radiated: Option<Shooter>,
     /// Where reflected light arrives in such a scene; known once the mesh is.
     pub(super) neighbourhoods: Option<Neighbourhoods>,

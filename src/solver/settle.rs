@@ -98,6 +98,7 @@ impl Solver<'_> {
         if shot.candidates.is_empty() {
             self.conserve_clusters(&shot.arrived.irradiance, &all);
             self.course.sent_sum = self.sent_sum();
+            self.radiated = Some(all);
             self.course.stage = Stage::Finished;
         } else {
             shot.made = Some(all);

@@ -22,7 +22,7 @@ pub(super) fn sheets(mesh: &Mesh, visibility: &dyn Visibility, reach: f64) -> Ve
     let shared: Vec<[u32; 2]> = sides
         .list
         .par_windows(2)
-        .filter(|pair| sides.are_one(&pair[0], &pair[1]))
+        .filter(|pair| pair[1].is_one_with_last)
         .map(|pair| ([pair[0].patch, pair[1].patch], middle(&pair[0])))
         .filter(|(patches, middle)| nothing_between(mesh, visibility, *patches, *middle, reach))
         .map(|(patches, _)| patches)

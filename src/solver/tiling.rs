@@ -103,13 +103,14 @@ impl Tiling {
         self.clusters.radiate(of_tiles.copied().collect(), seed);
     }
 
-    /// [`Self::even`] tiles with all of `whole` to send, to be looked at once more.
-    pub fn radiating(mesh: &Mesh, whole: &Light, how: (&Options, ToleranceScale)) -> Shooter {
-        let mut tiling = Self::even(mesh, whole, how);
-        let sent = tiling.unshot(mesh, whole, Sign::Positive);
-        tiling.radiate(&sent, 0x6175_6469);
-        let settled = true;
-        Shooter::All { tiling, settled }
+    /// The tiles with all of `whole` to send, to be looked at once more.
+    pub fn radiating(mut self, mesh: &Mesh, whole: &Light) -> Shooter {
+        let sent = self.unshot(mesh, whole, Sign::Positive);
+        self.radiate(&sent, 0x6175_6469);
+        Shooter::All {
+            tiling: self,
+            settled: true,
+        }
     }
 
     /// The tiles with what they send, to draw points from.
