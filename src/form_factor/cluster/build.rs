@@ -3,7 +3,7 @@
 use super::{Cluster, Clusters, Node, Sends, Tile};
 use crate::geometry::{SURFACE_OFFSET, facing};
 use crate::radiometry::Spectrum;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
@@ -19,18 +19,30 @@ impl Clusters {
             (facing(of.normal.as_dvec3()), of.back)
         };
         order.par_sort_by_key(side);
+        let centre = |tile: &Tile| tile.centre().extend(tile.area());
         let builder = Builder {
             tiles: &tiles,
-            centres: tiles.par_iter().map(Tile::centre).collect(),
+            centres: tiles.par_iter().map(centre).collect(),
         };
-        let (mut nodes, mut roots, mut first) = (Vec::new(), Vec::new(), 0);
+        let mut first = 0;
+        let mut groups = Vec::new();
         for group in order.chunk_by_mut(|a, b| side(a) == side(b)) {
-            let end = first + group.len() as u32;
-            roots.push(Cluster::over(first, end, nodes.len() as u32));
-            builder.build(group, Place { first, depth: 0 }, &mut nodes);
-            first = end;
+            let at = Place { first, depth: 0 };
+            first += group.len() as u32;
+            groups.push((at, group));
         }
-        nodes.shrink_to_fit();
+        let trees = groups.into_par_iter().with_max_len(1).map(|(at, group)| {
+            let mut nodes = Vec::new();
+            builder.build(group, at, &mut nodes);
+            (at.first..at.first + group.len() as u32, nodes)
+        });
+        let trees: Vec<_> = trees.collect();
+        let mut nodes = Vec::with_capacity(trees.iter().map(|(_, nodes)| nodes.len()).sum());
+        let mut roots = Vec::new();
+        for (of, mut tree) in trees {
+            roots.push(Cluster::over(of.start, of.end, nodes.len() as u32));
+            nodes.append(&mut tree);
+        }
         let mut places = vec![0; tiles.len()];
         for (place, tile) in (0..).zip(&order) {
             places[*tile as usize] = place;
@@ -65,7 +77,8 @@ fn rearrange(tiles: &mut [Tile], places: &mut [u32]) {
 
 struct Builder<'a> {
     tiles: &'a [Tile],
-    centres: Vec<Vec3>,
+    /// The centre of each, and its area.
+    centres: Vec<Vec4>,
 }
 
 /// Where a node is.
@@ -115,46 +128,52 @@ impl Builder<'_> {
     }
 
     fn node(&self, group: &[u32], first: u32) -> Node {
-        let of = |tile: &u32| &self.tiles[*tile as usize];
-        let areas: f32 = group.iter().map(|t| of(t).area()).sum();
-        let weighted = |t: &u32| self.centres[*t as usize] * of(t).area();
-        let centre = group.iter().map(weighted).sum::<Vec3>() / areas.max(f32::MIN_POSITIVE);
-        let far = |t: &u32| {
-            let corners = of(t).corners.iter();
-            corners
-                .map(|c| c.distance_squared(centre))
-                .fold(0.0, f32::max)
+        let (mut areas, mut centre, mut vector_area) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        for (tile, at) in self.of(group) {
+            areas += at.w;
+            centre += at.truncate() * at.w;
+            vector_area += tile.normal * at.w;
+        }
+        centre /= areas.max(f32::MIN_POSITIVE);
+        let axis = vector_area.normalize_or(self.tiles[group[0] as usize].normal);
+        let (mut square, mut thickness) = (0.0_f32, 0.0_f32);
+        let (mut cosine, mut square_sine) = (1.0_f32, 0.0_f32);
+        for (tile, _) in self.of(group) {
+            for corner in tile.corners {
+                let to = corner - centre;
+                square = square.max(to.length_squared());
+                thickness = thickness.max(to.dot(axis).abs());
+            }
+            cosine = cosine.min(tile.normal.dot(axis));
+            // From the normals themselves: from the cosine it would be lost in rounding where they are all but parallel.
+            square_sine = square_sine.max(tile.normal.cross(axis).length_squared());
+        }
+        let sine = if cosine > 0.0 {
+            square_sine.sqrt()
+        } else {
+            1.0
         };
-        let vector_area: Vec3 = group.iter().map(|t| of(t).normal * of(t).area()).sum();
-        let axis = vector_area.normalize_or(of(&group[0]).normal);
-        let aside = |t: &u32| {
-            let corners = of(t).corners.iter();
-            corners
-                .map(|c| (*c - centre).dot(axis).abs())
-                .fold(0.0, f32::max)
-        };
-        // The sine from the normals themselves: from the cosine it would be lost in rounding where they are all but parallel.
-        let sine_of = |t: &u32| of(t).normal.cross(axis).length();
-        let cosine = group
-            .iter()
-            .map(|t| of(t).normal.dot(axis))
-            .fold(1.0, f32::min);
-        let sine = group.iter().map(sine_of).fold(0.0, f32::max);
         Node {
             centre,
-            radius: group.iter().map(far).fold(0.0, f32::max).sqrt(),
-            cone: (cosine, if cosine > 0.0 { sine } else { 1.0 }),
+            radius: square.sqrt(),
+            cone: (cosine, sine),
             axis,
-            thickness: group.iter().map(aside).fold(0.0, f32::max),
+            thickness,
             first,
             end: first + group.len() as u32,
             ..Node::default()
         }
     }
 
+    /// The tiles of a group, each with its centre and area.
+    fn of(&self, group: &[u32]) -> impl Iterator<Item = (&Tile, Vec4)> {
+        let places = group.iter().map(|tile| *tile as usize);
+        places.map(|place| (&self.tiles[place], self.centres[place]))
+    }
+
     /// Sorts a group into two halves of the box around its centres; gives where the second begins.
     fn halve(&self, group: &mut [u32], depth: u32) -> usize {
-        let centre = |tile: &u32| self.centres[*tile as usize];
+        let centre = |tile: &u32| self.centres[*tile as usize].truncate();
         let (low, high) = group
             .iter()
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), tile| {

@@ -83,28 +83,40 @@ impl Found {
     }
 
     /// Adds a part with one ray.
+    #[inline(always)]
     pub fn push(&mut self, contribution: Spectrum, target: Vec3) {
-        self.push_all(contribution, std::iter::once((target, 1.0)));
+        self.targets.push(target);
+        self.shares.push(1.0);
+        self.parts.push(Part {
+            contribution,
+            rays: 1,
+        });
     }
 
-    /// Adds a part with a ray to each target; what arrives with each is in proportion to the number beside it.
-    pub fn push_all(&mut self, contribution: Spectrum, targets: impl Iterator<Item = (Vec3, f32)>) {
+    /// Adds a part with a ray to each target; what arrives with each is in proportion to what `kernel` says of it.
+    #[inline(always)]
+    pub fn push_all(
+        &mut self,
+        contribution: Spectrum,
+        targets: impl ExactSizeIterator<Item = Vec3>,
+        kernel: impl Fn(Vec3) -> f32,
+    ) {
+        let rays = targets.len();
         let before = self.targets.len();
-        for (target, share) in targets {
-            self.targets.push(target);
-            self.shares.push(share);
-        }
+        self.targets.extend(targets);
+        let kernels = self.targets[before..].iter().map(|target| kernel(*target));
+        self.shares.extend(kernels);
         let shares = &mut self.shares[before..];
         let all: f32 = shares.iter().sum();
         if all > 0.0 && all.is_finite() {
-            shares.iter_mut().for_each(|share| *share /= all);
+            let scale = 1.0 / all;
+            shares.iter_mut().for_each(|share| *share *= scale);
         } else {
-            let even = 1.0 / shares.len() as f32;
-            shares.fill(even);
+            shares.fill(1.0 / rays as f32);
         }
         self.parts.push(Part {
             contribution,
-            rays: shares.len() as u32,
+            rays: rays as u32,
         });
     }
 

@@ -319,6 +319,7 @@ impl Walk<'_> {
         Some(Sight { form_factor, cut })
     }
 
+    #[inline(always)]
     fn take_tile(&mut self, lane: usize, number: u32, limits: &Limits) {
         let (receiver, key) = self.receivers[lane];
         let (tile, radiosity) = self.clusters.tile(number);
@@ -359,8 +360,7 @@ impl Walk<'_> {
                 (a * b).max(0.0) / to.length_squared().powi(2)
             };
             let targets = (0..side * side).map(aim);
-            let shares = targets.map(|target| (target, kernel(target)));
-            self.points[lane].push_all(contribution, shares);
+            self.points[lane].push_all(contribution, targets, kernel);
         }
     }
 }
