@@ -155,3 +155,37 @@ pub(super) fn faces(patch: &Patch, source: &Source, extent: f64) -> bool {
         .any(|c| patch.normal.dot(*c - patch.corners()[0]) > hair);
     in_front_of_source && in_front_of_patch
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::radiometry::Spectrum;
+    use crate::solver::options::{Options, Preset};
+    use crate::solver::trial::Trial;
+
+    #[test]
+    fn what_clusters_give_to_a_point_does_not_depend_on_the_others_of_the_list() {
+        let options = Options {
+            cluster_from: 1,
+            ..Preset::Draft.options()
+        };
+        let trial = Trial::after(1, options.clone());
+        let solver = trial.solver();
+        let (mesh, light, sampler) = (&solver.mesh, &solver.light, solver.sampler());
+        let whole = solver.whole(Spectrum::ONE);
+        let tiling = Tiling::even(mesh, &whole, (&options, sampler.thresholds.scale));
+        let shooter = tiling.radiating(mesh, &whole);
+        let vertices = 0..mesh.vertices.len() as u32;
+        let points: Vec<_> = vertices.map(|v| receiver_at(mesh, light, v)).collect();
+        let (expected, rays) = evaluate(&sampler, &shooter, &points);
+        assert!(expected.iter().any(|g| g.irradiance != Spectrum::ZERO));
+
+        let reversed: Vec<_> = points.iter().rev().copied().collect();
+        let (mut found, rays_reversed) = evaluate(&sampler, &shooter, &reversed);
+        found.reverse();
+        assert!(found == expected && rays_reversed == rays);
+        let third: Vec<_> = points.iter().step_by(3).copied().collect();
+        let found = evaluate(&sampler, &shooter, &third).0;
+        assert!(found.iter().eq(expected.iter().step_by(3)));
+    }
+}
