@@ -113,17 +113,13 @@ impl Solver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::options::{Options, Preset};
+    use crate::solver::options::Preset;
     use crate::solver::shoot::Shooter;
-    use crate::solver::trial::Trial;
+    use crate::solver::trial::{Trial, as_clusters};
 
     #[test]
     fn a_bounce_takes_fewer_rays_than_a_gathering_at_the_same_points() {
-        let options = Options {
-            cluster_from: 1,
-            ..Preset::Draft.options()
-        };
-        let trial = Trial::after(1, options);
+        let trial = Trial::after(1, as_clusters(Preset::Draft));
         let mut solver = trial.solver();
         let unshot = solver.unshot_by_sign();
         solver.begin_wave(unshot, None);

@@ -39,25 +39,18 @@ mod tests {
     use crate::radiometry::Spectrum;
     use crate::solver::arrived::Arrived;
     use crate::solver::light::Sign;
-    use crate::solver::options::{Options, Preset};
+    use crate::solver::options::Preset;
     use crate::solver::shoot::{Beam, shoot_at};
-    use crate::solver::tiling::Tiling;
-    use crate::solver::trial::Trial;
+    use crate::solver::trial::{Trial, all_light, as_clusters};
 
     /// All light of the Cornell box as clusters, at all vertices.
     #[test]
     fn what_stands_for_a_long_element_is_sampled_more_finely() {
-        let options = Options {
-            cluster_from: 1,
-            ..Preset::Draft.options()
-        };
-        let trial = Trial::after(1, options.clone());
+        let trial = Trial::after(1, as_clusters(Preset::Draft));
         let solver = trial.solver();
         let (mesh, light) = (&solver.mesh, &solver.light);
         let sampler = solver.sampler();
-        let whole = solver.whole(Spectrum::ONE);
-        let tiling = Tiling::even(mesh, &whole, (&options, sampler.thresholds.scale));
-        let shooter = tiling.radiating(mesh, &whole);
+        let shooter = all_light(&solver);
         let found = |factor: f64, side: f64| {
             let sampler = Sampler {
                 thresholds: sampler.thresholds.scaled(factor),

@@ -132,16 +132,15 @@ fn reflected(arrived: Spectrum, unshot: Spectrum, prospect: Spectrum) -> Spectru
 
 #[cfg(test)]
 mod tests {
-    use crate::solver::trial::Trial;
+    use crate::solver::trial::{Trial, as_clusters};
     use crate::solver::{Options, Outcome, Preset, Silent};
     use glam::DVec3;
 
     /// The Cornell box shot as clusters, from where `shots` waves have left it.
     fn solved(shots: u64) -> (Trial, Outcome) {
         let options = Options {
-            cluster_from: 1,
             audit_points: 0,
-            ..Preset::Standard.options()
+            ..as_clusters(Preset::Standard)
         };
         let trial = Trial::after(shots, options);
         let outcome = trial.solver().run(&mut Silent);

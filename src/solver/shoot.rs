@@ -47,13 +47,13 @@ pub(super) fn evaluate(
     points: &[(Receiver, u32)],
 ) -> (Vec<Gather>, u64) {
     match shooter {
-        Shooter::Patch(source) => in_blocks(points, |points, gathers| {
+        Shooter::Patch(source) => block_by_block(points, |points, gathers| {
             SCRATCH.with_borrow_mut(|scratch| sampler.gather(source, points, scratch, gathers))
         }),
         Shooter::All { tiling, settled } => {
             let order = side_by_side(points, sampler.extent);
             let ordered: Vec<_> = order.iter().map(|n| points[*n as usize]).collect();
-            let (found, rays) = in_blocks(&ordered, |points, gathers| {
+            let (found, rays) = block_by_block(&ordered, |points, gathers| {
                 CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
                     sampler.gather_clusters(&tiling.clusters, points, *settled, scratch, gathers)
                 })
@@ -78,8 +78,8 @@ fn side_by_side(points: &[(Receiver, u32)], extent: f64) -> Vec<u32> {
     keyed.into_iter().map(|(_, _, n)| n).collect()
 }
 
-/// What `evaluated` says of all points, block by block.
-fn in_blocks(
+/// What `evaluated` says of all points.
+fn block_by_block(
     points: &[(Receiver, u32)],
     evaluated: impl Fn(&[(Receiver, u32)], &mut [Gather]) -> u64 + Sync,
 ) -> (Vec<Gather>, u64) {
@@ -160,21 +160,15 @@ pub(super) fn faces(patch: &Patch, source: &Source, extent: f64) -> bool {
 mod tests {
     use super::*;
     use crate::radiometry::Spectrum;
-    use crate::solver::options::{Options, Preset};
-    use crate::solver::trial::Trial;
+    use crate::solver::options::Preset;
+    use crate::solver::trial::{Trial, all_light, as_clusters};
 
     #[test]
     fn what_clusters_give_to_a_point_does_not_depend_on_the_others_of_the_list() {
-        let options = Options {
-            cluster_from: 1,
-            ..Preset::Draft.options()
-        };
-        let trial = Trial::after(1, options.clone());
+        let trial = Trial::after(1, as_clusters(Preset::Draft));
         let solver = trial.solver();
         let (mesh, light, sampler) = (&solver.mesh, &solver.light, solver.sampler());
-        let whole = solver.whole(Spectrum::ONE);
-        let tiling = Tiling::even(mesh, &whole, (&options, sampler.thresholds.scale));
-        let shooter = tiling.radiating(mesh, &whole);
+        let shooter = all_light(&solver);
         let vertices = 0..mesh.vertices.len() as u32;
         let points: Vec<_> = vertices.map(|v| receiver_at(mesh, light, v)).collect();
         let (expected, rays) = evaluate(&sampler, &shooter, &points);

@@ -1,7 +1,10 @@
 //! A solve under way, for the tests of its parts.
 
-use super::{Course, Light, Options, Silent, Solver, occluders};
+use super::shoot::Shooter;
+use super::tiling::Tiling;
+use super::{Course, Light, Options, Preset, Silent, Solver, occluders};
 use crate::mesh::Mesh;
+use crate::radiometry::Spectrum;
 use crate::scene::Scene;
 use crate::visibility::{EngineChoice, Visibility, build};
 use std::path::Path;
@@ -43,4 +46,20 @@ impl Trial {
         let options = self.options.clone();
         Solver::resume(&self.scene, state, &*self.engine, options, Duration::ZERO)
     }
+}
+
+/// The options of a preset, with which any patches shoot as clusters.
+pub(super) fn as_clusters(preset: Preset) -> Options {
+    Options {
+        cluster_from: 1,
+        ..preset.options()
+    }
+}
+
+/// All light of a solve, as clusters.
+pub(super) fn all_light(of: &Solver) -> Shooter {
+    let whole = of.whole(Spectrum::ONE);
+    let scale = of.sampler().thresholds.scale;
+    let tiling = Tiling::even(&of.mesh, &whole, (&of.options, scale));
+    tiling.radiating(&of.mesh, &whole)
 }
