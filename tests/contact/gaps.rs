@@ -250,16 +250,40 @@ fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
         .and(&cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::Y * (0.5 + gap))
         .scene(true);
     let mesh = pieces_down_to(&scene, SMALLEST).mesh;
-    let on_floor = (0..mesh.vertices.len() as u32)
-        .filter(|v| mesh.patch(mesh.vertices.patch_of(*v)).surface == 0);
-    let mut beside = 0;
-    for vertex in on_floor {
-        let [at, from] = [mesh.position(vertex), mesh.point(vertex)].map(|p| mesh.frame.leave(p));
-        let from_rim = |p: DVec3| (p.x.abs().max(p.z.abs()) - 0.5).abs();
-        if from_rim(at) < 1e-5 {
-            beside += 1;
-            assert!(from_rim(from) >= 1.9 * gap, "{from} for {at}");
+    // On the floor, and on the side of the box above it.
+    for (height, facing) in [(0.0, DVec3::Y), (gap, DVec3::NEG_Y)] {
+        let mut beside = 0;
+        for vertex in 0..mesh.vertices.len() as u32 {
+            let normal = mesh.patch(mesh.vertices.patch_of(vertex)).normal;
+            let places = [mesh.position(vertex), mesh.point(vertex)];
+            let [at, from] = places.map(|p| mesh.frame.leave(p));
+            let from_rim = |p: DVec3| (p.x.abs().max(p.z.abs()) - 0.5).abs();
+            let is_on_it = (at.y - height).abs() < 1e-5 && normal.dot(facing) > 0.9;
+            if is_on_it && from_rim(at) < 1e-5 {
+                beside += 1;
+                assert!(from_rim(from) >= 1.9 * gap, "{from} for {at}");
+            }
         }
+        assert!(beside >= 4, "{beside} at {height}");
     }
-    assert!(beside >= 8, "{beside}");
+}
+
+#[test]
+fn a_gap_is_dark_many_times_as_far_in_as_it_is_high() {
+    let gap = 4e-4;
+    let hovering = floor(4.0).and(&cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::Y * (0.5 + gap));
+    let solution = lit(hovering, [0.3, 0.9], 1.0);
+    let prober = Prober::new(&solution);
+    let irradiance = |at: DVec3, normal: DVec3| {
+        let probe = prober.probe(at, normal).expect("on a surface");
+        f64::from(probe.irradiance.x)
+    };
+    for step in 0..41 {
+        let x = f64::from(step) / 42.0 - 0.476;
+        let open = irradiance(DVec3::new(x, 0.0, 0.52), DVec3::Y);
+        let floor = irradiance(DVec3::new(x, 0.0, 0.48), DVec3::Y);
+        let above = irradiance(DVec3::new(x, gap, 0.48), DVec3::NEG_Y);
+        let most = floor.max(above) / open;
+        assert!(most < 0.06, "{most} of what is open at {x}");
+    }
 }

@@ -160,10 +160,11 @@ pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions, smallest: f64) ->
             }
         }
     }
-    pieces
-        .list
-        .par_iter_mut()
-        .for_each(|piece| piece.covered = splitter.covered(piece));
+    pieces.list.par_iter_mut().for_each(|piece| {
+        piece.covered = splitter.covered(piece);
+        let in_gaps = splitter.clearance_in_gaps(piece) as f32;
+        piece.clearance = piece.clearance.max(in_gaps);
+    });
     pieces.uncut = splitter.uncut.into_inner();
     pieces
 }
