@@ -27,6 +27,7 @@ mod vertices;
 mod weld;
 
 pub use build::MeshLimits;
+pub(crate) use contact::FINEST;
 pub use contact::{Piece, Pieces, Regions, pieces as split_at_contacts, regions};
 pub use element::{Element, NONE};
 pub use elements::Elements;

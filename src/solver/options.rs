@@ -1,12 +1,9 @@
 //! Every threshold of the method, and three presets.
 
 use crate::form_factor::{DEEPEST, Formula, SourceThresholds, ToleranceScale};
-use crate::mesh::{Mesh, MeshLimits};
+use crate::mesh::{FINEST, Mesh, MeshLimits};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-
-/// In a scene of many patches the least size of an element on a patch that is larger, as a part of the least size of a patch.
-const FINEST: f64 = 0.2;
 
 /// What a shooting patch gives to a source cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -243,29 +243,62 @@ fn beside_a_hovering_box_it_is_as_bright_as_beside_one_that_stands() {
     }
 }
 
+/// How far from the lines where `depth` is 0 light is evaluated for the vertices on them, at least, of patches that face a way at a height.
+fn least_clearance(
+    scene: &Scene,
+    (height, facing): (f64, DVec3),
+    depth: impl Fn(DVec3) -> f64,
+) -> f64 {
+    let mesh = pieces_down_to(scene, SMALLEST).mesh;
+    let clearance = |vertex: u32| {
+        let places = [mesh.position(vertex), mesh.point(vertex)];
+        let [at, from] = places.map(|p| mesh.frame.leave(p));
+        let patch = mesh.patch(mesh.vertices.patch_of(vertex));
+        let is_on_it = (at.y - height).abs() < 1e-5 && patch.normal.dot(facing) > 0.9;
+        (is_on_it && depth(at).abs() < 1e-5).then(|| depth(from).abs())
+    };
+    let vertices = 0..mesh.vertices.len() as u32;
+    let clearances: Vec<f64> = vertices.filter_map(clearance).collect();
+    assert!(clearances.len() >= 2, "{clearances:?}");
+    clearances.into_iter().fold(f64::INFINITY, f64::min)
+}
+
 #[test]
 fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
     let gap = 4e-4;
-    let scene = floor(4.0)
-        .and(&cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::Y * (0.5 + gap))
-        .scene(true);
-    let mesh = pieces_down_to(&scene, SMALLEST).mesh;
+    let hovering = floor(4.0).and(&cuboid(DVec3::ONE), DQuat::IDENTITY, DVec3::Y * (0.5 + gap));
+    let dark = hovering.scene(true);
+    let from_rim = |p: DVec3| p.x.abs().max(p.z.abs()) - 0.5;
     // On the floor, and on the side of the box above it.
-    for (height, facing) in [(0.0, DVec3::Y), (gap, DVec3::NEG_Y)] {
-        let mut beside = 0;
-        for vertex in 0..mesh.vertices.len() as u32 {
-            let normal = mesh.patch(mesh.vertices.patch_of(vertex)).normal;
-            let places = [mesh.position(vertex), mesh.point(vertex)];
-            let [at, from] = places.map(|p| mesh.frame.leave(p));
-            let from_rim = |p: DVec3| (p.x.abs().max(p.z.abs()) - 0.5).abs();
-            let is_on_it = (at.y - height).abs() < 1e-5 && normal.dot(facing) > 0.9;
-            if is_on_it && from_rim(at) < 1e-5 {
-                beside += 1;
-                assert!(from_rim(from) >= 1.9 * gap, "{from} for {at}");
-            }
-        }
-        assert!(beside >= 4, "{beside} at {height}");
+    for place in [(0.0, DVec3::Y), (gap, DVec3::NEG_Y)] {
+        let clearance = least_clearance(&dark, place, from_rim);
+        assert!(clearance >= 1.9 * gap, "{clearance}");
     }
+    // What shines lights all up to its rim.
+    let mut bright = dark;
+    for surface in &mut bright.surfaces[1..] {
+        surface.material = 1;
+    }
+    let shining = Material {
+        emitted_radiance: Vec3::ONE,
+        ..bright.materials[0].clone()
+    };
+    bright.materials.push(shining);
+    let clearance = least_clearance(&bright, (0.0, DVec3::Y), from_rim);
+    assert!(clearance < 1.5 * gap, "{clearance}");
+}
+
+#[test]
+fn beside_a_low_step_light_is_evaluated_where_it_hardly_hides_anything() {
+    let step = 4e-4;
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let higher = [(2.0, 2.0), (4.0, 2.0), (4.0, -2.0), (2.0, -2.0)];
+    let rise = [(0.0, 2.0), (step, 2.0), (step, -2.0), (0.0, -2.0)];
+    let scene = floor(4.0)
+        .with(&higher.map(|(x, z)| at(x, step, z)))
+        .with(&rise.map(|(y, z)| at(2.0, y, z)));
+    let clearance = least_clearance(&scene.scene(true), (0.0, DVec3::Y), |p| p.x - 2.0);
+    assert!(clearance >= 1.9 * step, "{clearance}");
 }
 
 #[test]

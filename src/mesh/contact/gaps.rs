@@ -3,8 +3,10 @@
 //! Behind a baseboard that stands a millimetre off a wall it is dark, and the light ends within millimetres of the rim. For elements of
 //! centimetres that is a step, as it is below a box that touches; one across it is bright or dark beyond the rim, and a row of them has
 //! teeth. So the face is cut along the rim, seen square to the face. What rays meet stays as it is: light enters the gap as before.
-//! That light is not for the elements beside the rim, which have vertices on it: there these look from where the gap is no more to be seen.
-//! Nor is it for what has corners in the gap, like the back of the baseboard: these look from as far inside.
+//! Nor is that light for the elements beside the rim, which have vertices on it: there these look from where the gap is no more to be seen.
+//! What has corners in the gap, like the back of the baseboard, looks from as far inside, and what ends at a low step from as far beside it: a
+//! millimetre would be bright or dark for a whole element. So it is with gaps that are thin against the very smallest elements, and not
+//! below a rim that shines.
 //!
 //! Only rims count, not all that is near: where a surface goes on beyond its side, as from one triangle of a sheet or of a cushion to the
 //! next, the gap goes on too. Cut along gaps up to a fraction of the least size of elements, meshes had these errors (nRMS, path-traced
@@ -16,23 +18,24 @@
 //! | Geometry, accurate | 0.22 | 0.60 | 0.18 | 0.21 |
 //! | interior with gaps of 0.9 mm in 29 m, standard | 2.80 | 2.51 | 2.35 | 2.35 |
 //!
-//! (That was before what has corners in a gap looked from further inside: with a quarter, Geometry, standard, is at 0.60 since, and a kitchen at
-//! 4.9 for 6.2.) Where Geometry is worse, that is on undersides a little higher than what is cut. With a quarter it has 28 % fewer vertices, the interior
+//! Where Geometry is worse, that is on undersides a little higher than what is cut. With a quarter it has 28 % fewer vertices, the interior
 //! 5 %. Uncut, boxes that hover are a fifth too dark at the foot, for what they see of the floor; cut, nothing there is off by 5 %.
+//! Since corners in gaps look from further inside, Geometry, standard, is at 0.60, and a kitchen with slits in its window's frame at 4.8 for 7.4.
 
 use super::face::Face;
 use super::index::Index;
 use super::lines::{Line, inside};
+use super::shapes::Shapes;
 use super::{Piece, Splitter};
 use crate::geometry::polygon;
-use crate::scene::{Corners, Sides};
+use crate::scene::Sides;
 use glam::{DVec2, DVec3};
 
 /// The highest gap, in lengths of the smallest elements: of the light at its rim a twentieth is left after two heights, in half of such
 /// an element.
 const HIGHEST: f64 = 0.25;
 
-/// Vertices beside a rim are evaluated this many heights of the gap away from it.
+/// Vertices beside a rim, and corners in a gap, are evaluated this many heights of the gap away from where it opens.
 const CLEARANCE: f64 = 2.0;
 
 /// The cosine of the steepest slope against a face of what lies in front of it; what is steeper stands on it.
@@ -43,6 +46,8 @@ const LYING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 pub(super) struct Gaps {
     /// How high they are at most, in the frame.
     height: f64,
+    /// How high those are at most that vertices keep clear of: against the smallest elements that there may be on a large surface.
+    clear: f64,
     /// The length of the smallest elements.
     smallest: f64,
 }
@@ -67,6 +72,8 @@ pub(super) struct Rim {
     height: f64,
     /// In the plane of the face.
     pub foot: Line,
+    /// How far from it light is evaluated, at least.
+    clearance: f64,
 }
 
 /// The rims in front of a face, by place.
@@ -92,50 +99,57 @@ impl Rims {
             let rims = near.map(|number| self.list[number]);
             let is_near = |rim: &Rim| nearest_on(rim.foot, *at).distance(*at) <= rim.height;
             rims.filter(is_near)
-                .map(|rim| rim.height)
+                .map(|rim| rim.clearance)
                 .fold(0.0, f64::max)
         };
-        CLEARANCE * corners.iter().map(beside).fold(0.0, f64::max)
+        corners.iter().map(beside).fold(0.0, f64::max)
     }
 }
 
 impl Splitter<'_> {
-    /// How far from the border of a piece light is evaluated, if it has corners in thin gaps. Where a gap opens, light comes as far as it
-    /// is high, and is not for an element of many times its length that has a corner there.
+    /// How far from the border of a piece light is evaluated, if it has corners in thin gaps or at low steps. Where a gap opens, light comes
+    /// in as far as it is high, and is not for an element of many times its length that has a corner there.
     pub(super) fn clearance_in_gaps(&self, piece: &Piece) -> f64 {
         let corners = piece.corners();
         if self.gaps.is_small(corners) {
             return 0.0;
         }
-        let of_corners = corners.iter().map(|corner| self.gap_at(piece, *corner));
-        CLEARANCE * of_corners.flatten().fold(0.0, f64::max)
+        let heights = corners.iter().map(|corner| self.gap_at(piece, *corner));
+        CLEARANCE * heights.flatten().fold(0.0, f64::max)
     }
 
-    /// The height of the thin gap between a corner of a piece and what lies in front of it.
+    /// The height of what lies in front of a corner of a piece, or ends beside it no farther than it is high.
     fn gap_at(&self, piece: &Piece, corner: DVec3) -> Option<f64> {
         let normal = polygon::vector_area(piece.corners()).try_normalize()?;
         let own = self.regions.first(piece.surface);
         let both_sides = self.shapes.surfaces[piece.surface as usize].sides == Sides::Both;
-        let height_to = |other: u32| {
+        let height_of = |other: u32| {
             let face = Face::new(&self.shapes.corners(other), self.reach)?;
             let facing = face.facing(piece.corners());
-            let height = -face.height(corner) / facing;
-            let foot = face.flatten(corner + height * normal);
-            let is_thin = (face.thickness..=self.gaps.height).contains(&height.abs());
-            let is_in_front = (both_sides || height > 0.0) && !face.beside(&[foot]);
-            (facing.abs() > LYING && is_thin && is_in_front).then_some(height.abs())
+            let up = -face.height(corner) / facing;
+            let height = up.abs();
+            let is_thin = (face.thickness..=self.gaps.clear).contains(&height);
+            if facing.abs() <= LYING || !is_thin || !both_sides && up < 0.0 {
+                return None;
+            }
+            let foot = face.flatten(corner + up * normal);
+            let mut depths = (0..face.corners().len()).map(|side| face.depth(side, foot));
+            depths.all(|depth| depth > -height).then_some(height)
         };
-        let near = self.neighbours.of(&[corner], self.gaps.height);
-        let others = near.filter(|other| self.regions.first(*other) != own);
-        others.filter_map(height_to).min_by(f64::total_cmp)
+        let near = self.neighbours.of(&[corner], 2.0 * self.gaps.clear);
+        let others =
+            near.filter(|other| self.regions.first(*other) != own && !self.shapes.emits(*other));
+        others.filter_map(height_of).min_by(f64::total_cmp)
     }
 }
 
 impl Gaps {
-    /// Those that are thin against elements of this length, in the frame; none if it is 0.
-    pub fn of(smallest: f64) -> Self {
+    /// Those that are thin against elements of this length, in the frame, of which on large surfaces some may be as small as `finest`; none
+    /// if these are 0.
+    pub fn of(smallest: f64, finest: f64) -> Self {
         Self {
             height: HIGHEST * smallest,
+            clear: HIGHEST * finest,
             smallest,
         }
     }
@@ -146,20 +160,20 @@ impl Gaps {
     }
 
     /// The rims in front of a face, or on both of its sides, with feet that keep away from the border and from `lines` of contact. `near` gives the surfaces closer than a distance.
-    pub fn rims<I: Iterator<Item = Corners>>(
+    pub fn rims<I: Iterator<Item = u32>>(
         &self,
         face: &Face,
         both_sides: bool,
         lines: &[Line],
         near: impl FnOnce(f64) -> I,
-        positions: &[DVec3],
+        shapes: &Shapes,
     ) -> Vec<Rim> {
         if self.is_small(face.corners()) || self.height <= face.thickness {
             return Vec::new();
         }
         let lowest = if both_sides { -self.height } else { 0.0 };
         let mut sides: Vec<Side> = near(self.height)
-            .flat_map(|other| self.sides(face, lowest, other, positions))
+            .flat_map(|other| self.sides(face, lowest, other, shapes))
             .collect();
         sides.sort_by_key(|side| side.key);
         // One that two lying surfaces have in common, on either side of it, is no rim.
@@ -179,9 +193,8 @@ impl Gaps {
     }
 
     /// The sides that a surface has in the gap, between the heights `lowest` and that of the gap.
-    fn sides(&self, face: &Face, lowest: f64, other: Corners, positions: &[DVec3]) -> Vec<Side> {
-        let indices = other.indices().iter();
-        let corners: Vec<DVec3> = indices.map(|v| positions[*v as usize]).collect();
+    fn sides(&self, face: &Face, lowest: f64, other: u32, shapes: &Shapes) -> Vec<Side> {
+        let corners = shapes.corners(other);
         let feet: Vec<DVec2> = corners.iter().map(|corner| face.flatten(*corner)).collect();
         if face.beside(&feet) {
             return Vec::new();
@@ -196,19 +209,26 @@ impl Gaps {
                 true => ([b, a], [ends[1], ends[0]]),
                 false => ([a, b], ends),
             };
+            let (height, foot) = self.within(face, lowest, ends)?;
+            let keeps_clear = height <= self.clear && !shapes.emits(other);
+            let clearance = if keeps_clear { CLEARANCE * height } else { 0.0 };
             Some(Side {
                 key,
                 left: turned != (facing > 0.0),
                 lies: facing.abs() > LYING,
-                rim: self.within(face, lowest, ends)?,
+                rim: Rim {
+                    height,
+                    foot,
+                    clearance,
+                },
             })
         };
         (0..corners.len()).filter_map(side).collect()
     }
 
-    /// The foot of what of a side is in the gap; of one that rises from it, only if that is as long as an element. One that touches the
+    /// The height and the foot of what of a side is in the gap; of one that rises from it, only if that is as long as an element. One that touches the
     /// face is a line of contact already.
-    fn within(&self, face: &Face, lowest: f64, ends: [DVec3; 2]) -> Option<Rim> {
+    fn within(&self, face: &Face, lowest: f64, ends: [DVec3; 2]) -> Option<(f64, Line)> {
         let heights = ends.map(|end| face.height(end));
         let (low, high) = (heights[0].min(heights[1]), heights[0].max(heights[1]));
         let touches = low >= -face.thickness && high <= face.thickness;
@@ -217,18 +237,14 @@ impl Gaps {
         }
         let [a, b] = ends.map(|end| face.flatten(end));
         if low >= lowest && high <= self.height {
-            return Some(Rim {
-                height: high.max(-low),
-                foot: [a, b],
-            });
+            return Some((high.max(-low), [a, b]));
         }
         let foot = |height: f64| {
             let within = height.clamp(lowest, self.height);
             a.lerp(b, (within - heights[0]) / (heights[1] - heights[0]))
         };
         let foot = heights.map(foot);
-        let height = self.height;
-        (foot[0].distance(foot[1]) > self.smallest).then_some(Rim { height, foot })
+        (foot[0].distance(foot[1]) > self.smallest).then_some((self.height, foot))
     }
 }
 

@@ -34,7 +34,7 @@ mod straighten;
 mod tile;
 
 use crate::geometry::{Frame, polygon};
-use crate::scene::{Corners, Scene, Sides};
+use crate::scene::{Scene, Sides};
 use arrange::{Arrangement, arrange, rearrange};
 use face::Face;
 use gaps::{Gaps, Rim, Rims};
@@ -63,6 +63,9 @@ const MOST_LINES: usize = 100_000;
 
 /// With more surfaces than this all patches shoot at once, if the options do not say otherwise.
 pub(super) const MANY: usize = 2000;
+
+/// In a scene of many patches the least size of an element on a patch that is larger, as a part of the least size of a patch.
+pub(crate) const FINEST: f64 = 0.2;
 
 /// Surfaces that are split at a time: what comes of each is a small list, and millions of those leave holes in memory that are not given back.
 const BLOCK: u32 = 1 << 15;
@@ -131,8 +134,10 @@ pub fn regions(scene: &Scene, frame: &Frame) -> Regions {
 /// the rims of gaps that are thin against elements of the length `smallest`, in the unit of the frame; 0 for none.
 pub fn pieces(scene: &Scene, frame: &Frame, regions: &Regions, smallest: f64) -> Pieces {
     let shapes = Shapes::new(scene, frame);
-    let splitter = Splitter::new(&shapes, frame, regions, Gaps::of(smallest));
     let count = scene.surfaces.len() as u32;
+    let is_of_many = scene.surfaces.len() > MANY;
+    let finest = if is_of_many { FINEST } else { 1.0 } * smallest;
+    let splitter = Splitter::new(&shapes, frame, regions, Gaps::of(smallest, finest));
     let mut pieces = Pieces::default();
     pieces.list.reserve(count as usize);
     // What came of surfaces whose turn is still to come.
@@ -245,22 +250,21 @@ impl<'a> Splitter<'a> {
     /// Where surfaces of other regions meet a face.
     fn lines(&self, face: &Face, first: u32) -> Vec<Line> {
         let others = self.others(face, first, self.reach + face.thickness);
-        lines::lines(face, others, &self.shapes.positions)
+        let corners = others.map(|other| self.shapes.surfaces[other as usize].corners);
+        lines::lines(face, corners, &self.shapes.positions)
     }
 
     /// Where surfaces of other regions end close in front of a face, away from its border and from lines on it.
     fn rims(&self, face: &Face, first: u32, lines: &[Line]) -> Vec<Rim> {
         let both_sides = self.shapes.surfaces[first as usize].sides == Sides::Both;
         let near = |margin| self.others(face, first, margin);
-        self.gaps
-            .rims(face, both_sides, lines, near, &self.shapes.positions)
+        self.gaps.rims(face, both_sides, lines, near, self.shapes)
     }
 
     /// The surfaces of other regions closer than `margin` to the box around a face.
-    fn others(&self, face: &Face, first: u32, margin: f64) -> impl Iterator<Item = Corners> {
+    fn others(&self, face: &Face, first: u32, margin: f64) -> impl Iterator<Item = u32> {
         let near = self.neighbours.of(face.corners(), margin);
         near.filter(move |other| self.regions.first(*other) != first)
-            .map(|other| self.shapes.surfaces[other as usize].corners)
     }
 
     /// Splits a face along lines, and along rims too where that can be done; `None` if neither can.
