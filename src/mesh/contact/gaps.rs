@@ -111,7 +111,7 @@ impl Splitter<'_> {
     /// in as far as it is high, and is not for an element of many times its length that has a corner there.
     pub(super) fn clearance_in_gaps(&self, piece: &Piece) -> f64 {
         let corners = piece.corners();
-        if self.gaps.is_small(corners) {
+        if self.gaps.is_small(corners) || self.gaps.clear <= self.reach {
             return 0.0;
         }
         let heights = corners.iter().map(|corner| self.gap_at(piece, *corner));
