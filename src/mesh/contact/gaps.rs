@@ -3,7 +3,7 @@
 //! Behind a baseboard that stands a millimetre off a wall it is dark, and the light ends within millimetres of the rim. For elements of
 //! centimetres that is a step, as it is below a box that touches; one across it is bright or dark beyond the rim, and a row of them has
 //! teeth. So the face is cut along the rim, seen square to the face. What rays meet stays as it is: light enters the gap as before.
-//! Nor is that light for the elements beside the rim, which have vertices on it: there these look from where the gap is no more to be seen.
+//! That light is not for the elements beside the rim, which have vertices on it: there these look from where the gap is no more to be seen.
 //! What has corners in the gap, like the back of the baseboard, looks from as far inside, and what ends at a low step from as far beside it: a
 //! millimetre would be bright or dark for a whole element. So it is with gaps that are thin against the very smallest elements, and not
 //! below a rim that shines.
