@@ -243,12 +243,13 @@ fn beside_a_hovering_box_it_is_as_bright_as_beside_one_that_stands() {
     }
 }
 
-/// How far from the lines where `depth` is 0 light is evaluated for the vertices on them, at least, of patches that face a way at a height.
+/// How far from the lines where `depth` is 0 light is evaluated for the vertices on them, at least, of patches that face a way at a height; and
+/// how many vertices these are.
 fn least_clearance(
     scene: &Scene,
     (height, facing): (f64, DVec3),
     depth: impl Fn(DVec3) -> f64,
-) -> f64 {
+) -> (f64, usize) {
     let mesh = pieces_down_to(scene, SMALLEST).mesh;
     let clearance = |vertex: u32| {
         let places = [mesh.position(vertex), mesh.point(vertex)];
@@ -259,8 +260,8 @@ fn least_clearance(
     };
     let vertices = 0..mesh.vertices.len() as u32;
     let clearances: Vec<f64> = vertices.filter_map(clearance).collect();
-    assert!(clearances.len() >= 2, "{clearances:?}");
-    clearances.into_iter().fold(f64::INFINITY, f64::min)
+    let count = clearances.len();
+    (clearances.into_iter().fold(f64::INFINITY, f64::min), count)
 }
 
 #[test]
@@ -270,9 +271,10 @@ fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
     let dark = hovering.scene(true);
     let from_rim = |p: DVec3| p.x.abs().max(p.z.abs()) - 0.5;
     // On the floor, and on the side of the box above it.
-    for place in [(0.0, DVec3::Y), (gap, DVec3::NEG_Y)] {
-        let clearance = least_clearance(&dark, place, from_rim);
+    for (place, least) in [((0.0, DVec3::Y), 8), ((gap, DVec3::NEG_Y), 4)] {
+        let (clearance, beside) = least_clearance(&dark, place, from_rim);
         assert!(clearance >= 1.9 * gap, "{clearance}");
+        assert!(beside >= least, "{beside}");
     }
     // What shines lights all up to its rim.
     let mut bright = dark;
@@ -284,8 +286,9 @@ fn beside_a_rim_light_is_evaluated_where_the_gap_is_hardly_seen() {
         ..bright.materials[0].clone()
     };
     bright.materials.push(shining);
-    let clearance = least_clearance(&bright, (0.0, DVec3::Y), from_rim);
+    let (clearance, beside) = least_clearance(&bright, (0.0, DVec3::Y), from_rim);
     assert!(clearance < 1.5 * gap, "{clearance}");
+    assert!(beside >= 8, "{beside}");
 }
 
 #[test]
@@ -297,8 +300,9 @@ fn beside_a_low_step_light_is_evaluated_where_it_hardly_hides_anything() {
     let scene = floor(4.0)
         .with(&higher.map(|(x, z)| at(x, step, z)))
         .with(&rise.map(|(y, z)| at(2.0, y, z)));
-    let clearance = least_clearance(&scene.scene(true), (0.0, DVec3::Y), |p| p.x - 2.0);
+    let (clearance, beside) = least_clearance(&scene.scene(true), (0.0, DVec3::Y), |p| p.x - 2.0);
     assert!(clearance >= 1.9 * step, "{clearance}");
+    assert!(beside >= 2, "{beside}");
 }
 
 #[test]
