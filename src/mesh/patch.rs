@@ -2,7 +2,6 @@
 
 use super::grid::Grid;
 use super::lattice::{Lattice, UNIT};
-use crate::geometry::polygon;
 use crate::radiometry::Spectrum;
 use glam::DVec3;
 use std::ops::Range;
@@ -43,17 +42,15 @@ pub struct Patch {
 impl Patch {
     #[inline(always)]
     pub(super) fn new(surface: u32, polygon: u32, corners: &[DVec3], back: bool) -> Self {
-        let vector_area = polygon::vector_area(corners);
+        let [a, b, c] = [corners[0], corners[1], corners[2]];
+        let d = *corners.get(3).unwrap_or(&a);
+        // No loop: who asks for neither normal nor area does not pay for them.
+        let vector_area = ((b - a).cross(c - a) + (c - a).cross(d - a)) * 0.5;
         let area = vector_area.length();
         Self {
             surface,
             polygon,
-            corners: [
-                corners[0],
-                corners[1],
-                corners[2],
-                *corners.get(3).unwrap_or(&corners[0]),
-            ],
+            corners: [a, b, c, d],
             corner_count: corners.len() as u8,
             outline: [true; 4],
             back,
