@@ -185,12 +185,12 @@ impl Solver<'_> {
         let look_at = |patch: usize| {
             let of = self.mesh.patches.at(patch);
             let bright = Shooter::Patch(Source::new(of.corners(), of.normal, levels, &even));
-            let seen = evaluate(plain, &bright, receivers).0;
+            let seen = evaluate(plain, &bright, receivers, |of| *of).0;
             let is_lit = whole.unshot_power(&self.mesh, patch, Sign::Positive) != Power::ZERO;
             let arrived = is_lit.then(|| {
                 let shooter = (patch, Sign::Positive);
                 let source = self.source_of(whole, shooter, &fine.thresholds);
-                evaluate(fine, &Shooter::Patch(source), receivers).0
+                evaluate(fine, &Shooter::Patch(source), receivers, |of| *of).0
             });
             (seen, arrived.unwrap_or_default())
         };
@@ -221,13 +221,13 @@ impl Solver<'_> {
             _ => Tiling::even(&self.mesh, whole, (&self.options, fine.thresholds.scale)),
         };
         let mut shooter = tiling.radiating(&self.mesh, whole);
-        let gathered = evaluate(fine, &shooter, receivers).0;
+        let gathered = evaluate(fine, &shooter, receivers, |of| *of).0;
         if let Shooter::All { tiling, .. } = &mut shooter {
             let even = Spectrum::splat(self.reference as f32);
             let count = tiling.clusters.tiles().len();
             tiling.clusters.radiate(vec![even; count], 0);
         }
-        let factors = evaluate(plain, &shooter, receivers).0;
+        let factors = evaluate(plain, &shooter, receivers, |of| *of).0;
         let gathered = gathered.iter().map(|g| g.irradiance.as_dvec3());
         let factors = factors
             .iter()

@@ -98,13 +98,11 @@ impl Solver<'_> {
     fn arrivals_near(&mut self, beam: Beam, near: &Neighbourhoods) -> Vec<Gather> {
         let seed = self.course.shots as u32;
         let near: Vec<&[u32]> = near.iter().collect();
-        let receivers: Vec<_> = near
-            .par_iter()
-            .with_min_len(64)
-            .map(|vertices| drawn(&self.mesh, vertices, seed))
-            .map(|vertex| receiver_at(&self.mesh, &self.light, vertex))
-            .collect();
-        let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &receivers);
+        let receiver = |vertices: &&[u32]| {
+            let vertex = drawn(&self.mesh, vertices, seed);
+            receiver_at(&self.mesh, &self.light, vertex)
+        };
+        let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &near, receiver);
         self.course.rays += rays;
         gathers
     }

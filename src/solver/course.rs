@@ -127,6 +127,16 @@ pub(super) struct Gathering {
     pub whole: Option<Light>,
 }
 
+impl Stage {
+    /// Whether it takes many steps before all light is in its place.
+    pub fn is_long(&self) -> bool {
+        match self {
+            Self::Refining(_) | Self::Settling(_) | Self::Waving(_) | Self::Gathering(_) => true,
+            Self::Shooting | Self::Bounced(_) | Self::Finished => false,
+        }
+    }
+}
+
 impl Course {
     /// What is done next, for who watches.
     pub(super) fn phase(&self, mesh: &Mesh) -> Phase {

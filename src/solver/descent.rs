@@ -4,6 +4,7 @@
 //! element's own vertices say so, those of its parts get the interpolant of its fan in place of another look at the source.
 
 use super::arrived::Arrived;
+use super::fineness::halvings;
 use super::light::Light;
 use super::options::Options;
 use super::refine::{Range, scale, unit};
@@ -85,19 +86,10 @@ impl<'a> Descent<'a> {
             let parts = |e: u32| self.mesh.element(e).parts();
             level = rough.into_iter().flat_map(parts).collect();
         }
-        let followers: Vec<Vec<(u32, Gather)>> = smooth
-            .par_iter()
-            .with_min_len(16)
-            .map(|element| {
-                let mut followers = Vec::new();
-                let whole = self.mesh.element(*element);
-                self.follow(&whole, self.fan(*element), &mut followers);
-                followers
-            })
-            .collect();
         // The finest last: along a side that it shares with a coarser one, its values are the nearer ones.
-        for (vertex, gather) in followers.into_iter().flatten() {
-            self.arrived.set(vertex, gather);
+        for element in smooth {
+            let whole = self.mesh.element(element);
+            self.follow(&whole, self.fan(element));
         }
     }
 
@@ -120,10 +112,11 @@ impl<'a> Descent<'a> {
     fn evaluate(&mut self, elements: &[u32]) {
         let mut fresh = Vec::new();
         for element in elements {
-            let side = self.mesh.longest_side(*element);
+            let side = || self.mesh.longest_side(*element) / self.mesh.frame.extent();
+            let times = halvings(self.beam.shooter, side);
             for vertex in self.mesh.element(*element).vertices() {
                 if !std::mem::replace(&mut self.is_known[vertex as usize], true) {
-                    fresh.push((vertex, side));
+                    fresh.push((vertex, times));
                 }
             }
         }
@@ -167,15 +160,17 @@ impl<'a> Descent<'a> {
         distance < NEAR * self.mesh.longest_side(element)
     }
 
-    /// Lists the vertices of an element's parts with what its fan has there: a corner of a part is a corner of the whole, its centre, or
+    /// Gives the vertices of an element's parts what its fan has there: a corner of a part is a corner of the whole, its centre, or
     /// halfway between two corners; the centre of a part is halfway between the whole's and a corner, or the whole's. No leaf is asked.
-    fn follow(&self, whole: &Element, fan: Fan, followers: &mut Vec<(u32, Gather)>) {
+    /// One thread does that for all: values that go to and fro between two take longer than that.
+    fn follow(&mut self, whole: &Element, fan: Fan) {
+        let (is_known, arrived) = (&self.is_known, &mut *self.arrived);
         let mut halfway = |vertex: u32, ends: [Gather; 2]| {
-            if self.is_known[vertex as usize] {
-                return self.arrived.at(vertex);
+            if is_known[vertex as usize] {
+                return arrived.at(vertex);
             }
             let gather = Gather::mean(&ends);
-            followers.push((vertex, gather));
+            arrived.set(vertex, gather);
             gather
         };
         let count = whole.corners().len();
@@ -200,7 +195,7 @@ impl<'a> Descent<'a> {
                 corners[..3].copy_from_slice(&[middles[1], middles[2], middles[0]]);
             }
             let centre = centres[i];
-            self.follow(&parts[i], Fan { corners, centre }, followers);
+            self.follow(&parts[i], Fan { corners, centre });
         }
     }
 }

@@ -67,7 +67,7 @@ pub(super) fn feelers(
             (receiver, !number)
         })
         .collect();
-    let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &points);
+    let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &points, |of| *of);
     for (feeler, gather) in feelers.iter_mut().zip(gathers) {
         feeler.irradiance = gather.irradiance * beam.sign.factor();
     }

@@ -22,9 +22,12 @@ pub(super) fn most_halvings(shooter: &Shooter) -> u32 {
     }
 }
 
-/// How often they are for what stands for an element with sides as long as `side`, a part of the scene's extent.
-pub(super) fn halvings(shooter: &Shooter, side: f64) -> u32 {
-    ((side / SHORT).log2().max(0.0) as u32).min(most_halvings(shooter))
+/// How often they are for what stands for an element with sides as long as `side` says, a part of the scene's extent.
+pub(super) fn halvings(shooter: &Shooter, side: impl FnOnce() -> f64) -> u32 {
+    match most_halvings(shooter) {
+        0 => 0,
+        most => ((side() / SHORT).log2().max(0.0) as u32).min(most),
+    }
 }
 
 /// Thresholds that were halved so often.
@@ -61,9 +64,9 @@ mod tests {
                 shooter: &shooter,
                 sign: Sign::Positive,
             };
-            let side = side * mesh.frame.extent();
+            let times = halvings(&shooter, || side);
             let open = (0..mesh.vertices.len() as u32).filter(|v| !mesh.buried[*v as usize]);
-            let vertices: Vec<(u32, f64)> = open.map(|v| (v, side)).collect();
+            let vertices: Vec<(u32, u32)> = open.map(|v| (v, times)).collect();
             let mut arrived = Arrived::nothing(mesh);
             let rays = shoot_at(mesh, light, beam, &vertices, &mut arrived);
             (arrived.irradiance, rays)

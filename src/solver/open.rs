@@ -142,7 +142,7 @@ impl<'a> OpenLight<'a> {
             thresholds: self.options.source_thresholds(self.reference).scaled(finer),
         };
         if let Some(all) = &self.clusters {
-            let (gathers, _) = evaluate(&sampler, all, receivers);
+            let (gathers, _) = evaluate(&sampler, all, receivers, |of| *of);
             return gathers.iter().map(|g| g.irradiance).collect();
         }
         let mut sums = vec![Power::ZERO; receivers.len()];
@@ -159,7 +159,7 @@ impl<'a> OpenLight<'a> {
                 &sampler.thresholds,
             );
             let source = source_from(self.mesh, patch, &cells);
-            let (gathers, _) = evaluate(&sampler, &Shooter::Patch(source), receivers);
+            let (gathers, _) = evaluate(&sampler, &Shooter::Patch(source), receivers, |of| *of);
             for (sum, gather) in sums.iter_mut().zip(gathers) {
                 *sum += gather.irradiance.as_dvec3();
             }

@@ -4,6 +4,7 @@ use super::arrived::Arrived;
 use super::behind::Behind;
 use super::burial::buried;
 use super::feelers::Feeler;
+use super::fineness::halvings;
 use super::light::Light;
 use super::options::{Options, Quantity};
 use super::shoot::{Beam, Shooter, evaluate, shoot_at};
@@ -12,7 +13,7 @@ use crate::mesh::{Lattice, Mesh, NONE};
 use crate::radiometry::Spectrum;
 use rayon::iter::Either;
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// One shot in the middle of its refinement.
 pub(super) struct Refinement<'a> {
@@ -188,40 +189,36 @@ impl Refinement<'_> {
 
     /// Visibility indices in the middles of the sides, each computed once for both neighbours.
     fn middles(&mut self, elements: &[(u32, Range)]) -> FxHashMap<(u32, Lattice), Option<f32>> {
-        let mut keys = Vec::new();
-        let mut points = Vec::new();
-        let mut seen = FxHashMap::default();
+        let mut middles = Vec::new();
+        let mut seen = FxHashSet::default();
         for (element, _) in elements {
             let of = self.mesh.element(*element);
             for (side, a, b) in of.sides() {
                 let key = (of.patch, self.middle(a, b));
-                if of.hanging[side] == NONE && seen.insert(key, ()).is_none() {
-                    let [pa, pb] = [a, b].map(|v| self.mesh.point(v));
-                    let normal = self.mesh.patch(of.patch).normal;
-                    let irradiance = self.light.irradiance[a as usize]
-                        .max(self.light.irradiance[b as usize])
-                        .max_element();
-                    // A seed of its own: from the place, as no vertex number is there yet.
-                    let seed = key.1.u.wrapping_mul(0x9e37_79b1)
-                        ^ key.1.v.rotate_left(15)
-                        ^ of.patch.rotate_left(7);
-                    keys.push(key);
-                    points.push((
-                        Receiver {
-                            point: (pa + pb) * 0.5,
-                            normal,
-                            irradiance,
-                        },
-                        seed,
-                    ));
+                if of.hanging[side] == NONE && seen.insert(key) {
+                    middles.push((key, [a, b]));
                 }
             }
         }
-        let (gathers, rays) = evaluate(self.beam.sampler, self.beam.shooter, &points);
+        let receiver = |&((patch, at), ends): &((u32, Lattice), [u32; 2])| {
+            let [a, b] = ends.map(|v| self.mesh.point(v));
+            let [lit, also] = ends.map(|v| self.light.irradiance[v as usize]);
+            let receiver = Receiver {
+                point: (a + b) * 0.5,
+                normal: self.mesh.patch(patch).normal,
+                irradiance: lit.max(also).max_element(),
+            };
+            // A seed of its own: from the place, as no vertex number is there yet.
+            let seed = at.u.wrapping_mul(0x9e37_79b1) ^ at.v.rotate_left(15);
+            (receiver, seed ^ patch.rotate_left(7))
+        };
+        let Beam {
+            sampler, shooter, ..
+        } = self.beam;
+        let (gathers, rays) = evaluate(sampler, shooter, &middles, receiver);
         self.rays += rays;
-        keys.into_iter()
-            .zip(gathers.iter().map(|g| g.visibility))
-            .collect()
+        let keys = middles.iter().map(|(key, _)| *key);
+        keys.zip(gathers.iter().map(|g| g.visibility)).collect()
     }
 
     /// Splits, then splits more until the quadtree is balanced; new vertices get everything before this shot interpolated
@@ -243,8 +240,8 @@ impl Refinement<'_> {
         let first = first_vertex as u32;
         let buried = buried(self.mesh, self.beam.sampler.visibility, self.backing, first);
         self.mesh.finish_topology(first, &buried);
-        let open: Vec<(u32, f64)> = (first..)
-            .zip(self.longest_around(first, &fresh))
+        let open: Vec<(u32, u32)> = (first..)
+            .zip(self.halvings_around(first, &fresh))
             .filter(|(v, _)| !self.mesh.buried[*v as usize])
             .collect();
         self.rays += shoot_at(self.mesh, self.light, self.beam, &open, self.arrived);
@@ -258,18 +255,19 @@ impl Refinement<'_> {
         fresh
     }
 
-    /// The longest of `elements` around each vertex from `first` on.
-    fn longest_around(&self, first: u32, elements: &[u32]) -> Vec<f64> {
-        let mut longest = vec![0.0_f64; self.mesh.vertices.len() - first as usize];
+    /// For each vertex from `first` on, how often thresholds are halved for the longest of `elements` around it.
+    fn halvings_around(&self, first: u32, elements: &[u32]) -> Vec<u32> {
+        let mut most = vec![0; self.mesh.vertices.len() - first as usize];
         for element in elements {
-            let side = self.mesh.longest_side(*element);
+            let side = || self.mesh.longest_side(*element) / self.mesh.frame.extent();
+            let times = halvings(self.beam.shooter, side);
             let of = self.mesh.element(*element);
             for vertex in of.vertices().filter(|v| *v >= first) {
-                let longest = &mut longest[(vertex - first) as usize];
-                *longest = longest.max(side);
+                let most = &mut most[(vertex - first) as usize];
+                *most = times.max(*most);
             }
         }
-        longest
+        most
     }
 
     /// Gives the new vertices of a split element what its fan had before this shot.

@@ -1,7 +1,7 @@
 //! What shoots, evaluated at many vertices.
 
 use super::arrived::Arrived;
-use super::fineness::{halved, halvings, most_halvings};
+use super::fineness::{halved, most_halvings};
 use super::light::{Light, Sign};
 use super::tiling::Tiling;
 use crate::form_factor::{ClusterScratch, Gather, Receiver, Sampler, Scratch, Source};
@@ -39,21 +39,25 @@ pub(super) struct Beam<'a> {
     pub sign: Sign,
 }
 
-/// Evaluates `shooter` at each point (of what shoots alone neighbours should follow one another, so that their rays share packets); one result a
-/// point, and the number of rays. The same for any number of threads: blocks depend on the list alone.
-pub(super) fn evaluate(
+/// Evaluates `shooter` where `receiver` says that each of `list` receives, and with which seed (of what shoots alone neighbours should follow one
+/// another, so that their rays share packets); one result for each, and the number of rays. The same for any number of threads: blocks depend on
+/// the list alone.
+pub(super) fn evaluate<T: Sync>(
     sampler: &Sampler,
     shooter: &Shooter,
-    points: &[(Receiver, u32)],
+    list: &[T],
+    receiver: impl Fn(&T) -> (Receiver, u32) + Sync + Send,
 ) -> (Vec<Gather>, u64) {
     match shooter {
-        Shooter::Patch(source) => block_by_block(points, |points, gathers| {
+        Shooter::Patch(source) => block_by_block(list, receiver, |points, gathers| {
             SCRATCH.with_borrow_mut(|scratch| sampler.gather(source, points, scratch, gathers))
         }),
         Shooter::All { tiling, settled } => {
-            let order = side_by_side(points, sampler.extent);
-            let ordered: Vec<_> = order.iter().map(|n| points[*n as usize]).collect();
-            let (found, rays) = block_by_block(&ordered, |points, gathers| {
+            let points = list.par_iter().with_min_len(256).map(receiver);
+            let points: Vec<_> = points.collect();
+            let order = side_by_side(&points, sampler.extent);
+            let point = |n: &u32| points[*n as usize];
+            let (found, rays) = block_by_block(&order, point, |points, gathers| {
                 CLUSTER_SCRATCH.with_borrow_mut(|scratch| {
                     sampler.gather_clusters(&tiling.clusters, points, *settled, scratch, gathers)
                 })
@@ -78,48 +82,47 @@ fn side_by_side(points: &[(Receiver, u32)], extent: f64) -> Vec<u32> {
     keyed.into_iter().map(|(_, _, n)| n).collect()
 }
 
-/// What `evaluated` says of all points.
-fn block_by_block(
-    points: &[(Receiver, u32)],
+/// What `evaluated` says of all points of a list.
+fn block_by_block<T: Sync>(
+    list: &[T],
+    point: impl Fn(&T) -> (Receiver, u32) + Sync,
     evaluated: impl Fn(&[(Receiver, u32)], &mut [Gather]) -> u64 + Sync,
 ) -> (Vec<Gather>, u64) {
-    let block = (points.len() / SHARES).clamp(LEAST_BLOCK, BLOCK);
-    let mut gathers = vec![Gather::default(); points.len()];
+    let block = (list.len() / SHARES).clamp(LEAST_BLOCK, BLOCK);
+    let mut gathers = vec![Gather::default(); list.len()];
     // Each block a task of its own: of several together, one thread would still be at the last ones when nothing is left for the others.
-    let blocks = points.par_chunks(block).zip(gathers.par_chunks_mut(block));
-    let rays = blocks
-        .with_max_len(1)
-        .map(|(points, gathers)| evaluated(points, gathers));
+    let blocks = list.par_chunks(block).zip(gathers.par_chunks_mut(block));
+    let rays = blocks.with_max_len(1).map(|(list, gathers)| {
+        let points: Vec<_> = list.iter().map(&point).collect();
+        evaluated(&points, gathers)
+    });
     let rays = rays.sum();
     (gathers, rays)
 }
 
-/// Evaluates `beam` at the given vertices of `mesh`, each with how long the element is that it stands for, into `arrived`, which has a place for
+/// Evaluates `beam` at the given vertices of `mesh`, each with how often thresholds are halved for it, into `arrived`, which has a place for
 /// every vertex; returns the number of rays.
 pub(super) fn shoot_at(
     mesh: &Mesh,
     light: &Light,
     beam: Beam,
-    vertices: &[(u32, f64)],
+    vertices: &[(u32, u32)],
     arrived: &mut Arrived,
 ) -> u64 {
-    let extent = mesh.frame.extent();
     let mut rays = 0;
     for times in 0..=most_halvings(beam.shooter) {
-        let is_asked = |side: f64| halvings(beam.shooter, side / extent) == times;
-        let points: Vec<_> = vertices
-            .par_iter()
-            .with_min_len(256)
-            .filter(|(v, side)| mesh.receives(*v) && is_asked(*side))
-            .map(|(v, _)| receiver_at(mesh, light, *v))
-            .collect();
+        let asked = vertices
+            .iter()
+            .filter(|(v, of)| *of == times && mesh.receives(*v));
+        let asked: Vec<u32> = asked.map(|(v, _)| *v).collect();
         let sampler = Sampler {
             thresholds: halved(beam.sampler.thresholds, times),
             ..*beam.sampler
         };
-        let (gathers, traced) = evaluate(&sampler, beam.shooter, &points);
+        let receiver = |v: &u32| receiver_at(mesh, light, *v);
+        let (gathers, traced) = evaluate(&sampler, beam.shooter, &asked, receiver);
         rays += traced;
-        for ((_, vertex), mut gather) in points.iter().zip(gathers) {
+        for (vertex, mut gather) in asked.iter().zip(gathers) {
             gather.irradiance *= beam.sign.factor();
             arrived.set(*vertex, gather);
         }
@@ -171,15 +174,16 @@ mod tests {
         let shooter = all_light(&solver);
         let vertices = 0..mesh.vertices.len() as u32;
         let points: Vec<_> = vertices.map(|v| receiver_at(mesh, light, v)).collect();
-        let (expected, rays) = evaluate(&sampler, &shooter, &points);
+        let of = |points: &[(Receiver, u32)]| evaluate(&sampler, &shooter, points, |of| *of);
+        let (expected, rays) = of(&points);
         assert!(expected.iter().any(|g| g.irradiance != Spectrum::ZERO));
 
         let reversed: Vec<_> = points.iter().rev().copied().collect();
-        let (mut found, rays_reversed) = evaluate(&sampler, &shooter, &reversed);
+        let (mut found, rays_reversed) = of(&reversed);
         found.reverse();
         assert!(found == expected && rays_reversed == rays);
         let third: Vec<_> = points.iter().step_by(3).copied().collect();
-        let found = evaluate(&sampler, &shooter, &third).0;
+        let found = of(&third).0;
         assert!(found.iter().eq(expected.iter().step_by(3)));
     }
 }

@@ -204,9 +204,8 @@ impl<'a> Solver<'a> {
         let receiving: Vec<u32> = vertices.filter(receives).collect();
         let mut rays = 0;
         let receive = |nodes: &[u32]| {
-            let receivers = nodes.iter().map(|v| receiver_at(mesh, &self.light, *v));
-            let receivers: Vec<_> = receivers.collect();
-            let (gathers, traced) = evaluate(beam.sampler, beam.shooter, &receivers);
+            let receiver = |v: &u32| receiver_at(mesh, &self.light, *v);
+            let (gathers, traced) = evaluate(beam.sampler, beam.shooter, nodes, receiver);
             rays += traced;
             gathers
         };
