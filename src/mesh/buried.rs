@@ -89,7 +89,7 @@ impl Mesh {
         };
         let elements = self.elements_on(&patches).into_par_iter();
         let is_leaf = |e: &u32| self.elements.is_leaf(*e);
-        let leaves = elements.with_min_len(1024).filter(is_leaf);
+        let leaves = elements.with_min_len(256).filter(is_leaf);
         let edges = leaves.flat_map_iter(edges_of);
         let mut edges: Vec<(u32, u32)> = edges.collect();
         edges.par_sort_unstable();

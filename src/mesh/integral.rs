@@ -20,7 +20,7 @@ impl Mesh {
 
     /// Computes the weights of the vertices of some patches.
     pub(super) fn integrate(&mut self, patches: &[u32]) {
-        let leaves = patches.par_iter().with_min_len(64).flat_map_iter(|patch| {
+        let leaves = patches.par_iter().flat_map_iter(|patch| {
             let mut leaves = self.leaves_of(&self.patch(*patch));
             // Any way to the same mesh adds in the same order.
             leaves.sort_unstable();
@@ -43,7 +43,7 @@ impl Mesh {
         };
         let areas: Vec<[f64; 4]> = leaves
             .par_iter()
-            .with_min_len(1024)
+            .with_min_len(256)
             .map(|leaf| triangles(&self.element(*leaf)))
             .collect();
         let mut weights = take(&mut self.weights);

@@ -134,7 +134,7 @@ impl Mesh {
             element.is_leaf() && self.has_quarter_vertex(&element)
         };
         let elements = self.elements_on(&self.touched()).into_par_iter();
-        let unbalanced = elements.with_min_len(1024).filter(is_unbalanced);
+        let unbalanced = elements.with_min_len(256).filter(is_unbalanced);
         let mut unbalanced: Vec<u32> = unbalanced.collect();
         unbalanced.sort_unstable();
         unbalanced
@@ -157,8 +157,8 @@ impl Mesh {
 
     /// All elements of some patches.
     pub(super) fn elements_on(&self, patches: &[u32]) -> Vec<u32> {
-        let patches = patches.par_iter().with_min_len(64);
         patches
+            .par_iter()
             .flat_map_iter(|patch| self.elements_of(&self.patch(*patch)))
             .collect()
     }
@@ -183,7 +183,7 @@ impl Mesh {
             let hanging = self.hanging(&of);
             (hanging != of.hanging).then_some((e, Element { hanging, ..of }))
         };
-        let others: Vec<_> = elements.with_min_len(1024).filter_map(other).collect();
+        let others: Vec<_> = elements.with_min_len(256).filter_map(other).collect();
         for (number, element) in others {
             self.elements.change(number, element);
         }

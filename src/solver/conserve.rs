@@ -255,16 +255,17 @@ impl Solver<'_> {
     /// What an irradiance by vertex comes to in all, and what of that is reflected.
     fn totals(&self, irradiance: impl Fn(usize) -> Spectrum + Sync) -> [Power; 2] {
         let mesh = &self.mesh;
-        let mut totals = [Power::ZERO; 2];
-        let at = |vertex: usize| {
-            let patch = mesh.vertices.patch_of(vertex as u32) as usize;
-            let arrived = irradiance(vertex).as_dvec3() * mesh.weights[vertex];
+        let of_patch = |patch: usize| {
+            let vertices = mesh.vertices_of(patch as u32).map(|v| v as usize);
+            let arrived = vertices.map(|v| irradiance(v).as_dvec3() * mesh.weights[v]);
+            let arrived: Power = arrived.sum();
             [
                 arrived,
                 mesh.patches.reflectance(patch).as_dvec3() * arrived,
             ]
         };
-        in_order(mesh.weights.len(), at, |[arrived, returned]| {
+        let mut totals = [Power::ZERO; 2];
+        in_order(mesh.patches.len(), of_patch, |[arrived, returned]| {
             totals[0] += arrived;
             totals[1] += returned;
         });

@@ -96,6 +96,9 @@ pub(super) struct Shot {
     pub feelers: Vec<Feeler>,
     /// What the shot gave to each vertex so far.
     pub arrived: Arrived,
+    /// What of it leaves the scene; found when it is asked for, unless there was time while it arrived.
+    #[serde(skip)]
+    pub lost: Option<Lost>,
     /// Made of `cells` when it is asked for.
     #[serde(skip)]
     pub made: Option<Shooter>,
@@ -125,16 +128,6 @@ pub(super) struct Gathering {
     /// The light that is gathered; made when it is asked for.
     #[serde(skip)]
     pub whole: Option<Light>,
-}
-
-impl Stage {
-    /// Whether it takes many steps before all light is in its place.
-    pub fn is_long(&self) -> bool {
-        match self {
-            Self::Refining(_) | Self::Settling(_) | Self::Waving(_) | Self::Gathering(_) => true,
-            Self::Shooting | Self::Bounced(_) | Self::Finished => false,
-        }
-    }
 }
 
 impl Course {

@@ -9,7 +9,7 @@ use super::light::Light;
 use super::options::Options;
 use super::refine::{Range, scale, unit};
 use super::shoot::{Beam, Shooter, shoot_at};
-use crate::form_factor::Gather;
+use crate::form_factor::{Gather, Source};
 use crate::geometry::polygon;
 use crate::mesh::{Element, Mesh};
 use rayon::prelude::*;
@@ -125,16 +125,16 @@ impl<'a> Descent<'a> {
 
     fn is_rough(&self, element: u32) -> bool {
         let of = self.mesh.element(element);
-        if self.is_near(element) || of.vertices().any(|v| self.mesh.buried[v as usize]) {
+        if of.vertices().any(|v| self.mesh.buried[v as usize]) {
             return true;
         }
         let residual = of.residual(|v| self.at(v).irradiance);
         let residual = f64::from(residual.max_element());
-        if let Shooter::All { .. } = self.beam.shooter {
+        let Shooter::Patch(source) = self.beam.shooter else {
             // No other shot adds its part to the error of this one.
             let unit = unit(self.mesh, self.light, &self.beam, self.options, element);
             return residual > RESIDUAL * self.options.epsilon_r * unit;
-        }
+        };
         let arrived = || of.vertices().map(|v| self.arrived.at(v));
         let given = arrived().map(|g| g.irradiance.abs().max_element());
         let given = f64::from(given.fold(0.0, f32::max));
@@ -147,13 +147,11 @@ impl<'a> Descent<'a> {
         let unoccluded = f64::from(unoccluded.fold(0.0, f32::max));
         let indices = Range::of(arrived().map(|g| g.visibility));
         indices.width() * unoccluded > INDEX * self.options.epsilon_v * tolerance
+            || self.is_near(source, element)
     }
 
     /// Whether the source is so near that five points may miss where most of its light falls.
-    fn is_near(&self, element: u32) -> bool {
-        let Shooter::Patch(source) = self.beam.shooter else {
-            return false;
-        };
+    fn is_near(&self, source: &Source, element: u32) -> bool {
         let centre = self.mesh.element(element).centre;
         let centre = self.mesh.position(centre);
         let distance = polygon::distance(centre, source.corners(), source.normal());

@@ -5,6 +5,9 @@ use crate::radiometry::{Power, Spectrum};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+/// Vertices that one thread adds light at: of fewer, to wake another would take longer.
+const SLICE: usize = 1 << 15;
+
 /// Irradiance at the vertices, and what of it has not been shot.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Light {
@@ -133,7 +136,7 @@ impl Light {
     /// Adds what arrives at each vertex, all of it unshot.
     pub(super) fn receive(&mut self, arrived: impl IndexedParallelIterator<Item = Spectrum>) {
         let light = self.irradiance.par_iter_mut().zip(&mut self.unshot);
-        let light = light.zip(arrived).with_min_len(4096);
+        let light = light.zip(arrived).with_min_len(SLICE);
         light.for_each(|((irradiance, unshot), arrived)| {
             *irradiance += arrived;
             *unshot += arrived;

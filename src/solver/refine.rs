@@ -36,13 +36,10 @@ impl Refinement<'_> {
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
         let may_split =
             |e: &u32| self.mesh.elements.is_leaf(*e) && self.options.may_split(self.mesh, *e);
-        let fails = |e: &u32| {
-            let unit = self.unit(*e);
-            self.nodal_difference(*e, unit) || self.residual(*e, unit)
-        };
+        let fails = |e: &u32| self.nodal_difference(*e) || self.residual(*e);
         let (mut failed, passed): (Vec<u32>, Vec<u32>) = candidates
             .par_iter()
-            .with_min_len(256)
+            .with_min_len(64)
             .filter(|e| may_split(e))
             .partition_map(|e| {
                 if fails(e) {
@@ -73,20 +70,20 @@ impl Refinement<'_> {
     }
 
     /// Test 1: corners differ by more than ε_d.
-    fn nodal_difference(&self, element: u32, unit: f64) -> bool {
+    fn nodal_difference(&self, element: u32) -> bool {
         let of = self.mesh.element(element);
         let values = of.corners().iter().map(|v| self.tested(*v));
         let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
         let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
-        self.size(element, high - low) > self.options.epsilon_d * unit
+        self.exceeds(element, high - low, self.options.epsilon_d)
     }
 
     /// Test 2: at the centre, computed and interpolated light differ by more than ε_r. Both are sums over all shots since
     /// the element was made (before that the centre was interpolated), so small lights add up.
-    fn residual(&self, element: u32, unit: f64) -> bool {
+    fn residual(&self, element: u32) -> bool {
         let of = self.mesh.element(element);
         let residual = of.residual(|v| self.tested(v));
-        self.size(element, residual) > self.options.epsilon_r * unit
+        self.exceeds(element, residual, self.options.epsilon_r)
     }
 
     /// What tests 1 and 2 compare at a vertex: all light, but of a last gathering what that has brought.
@@ -107,8 +104,11 @@ impl Refinement<'_> {
         f64::from((difference * weight).max_element())
     }
 
-    fn unit(&self, element: u32) -> f64 {
-        unit(self.mesh, self.light, &self.beam, self.options, element)
+    /// Whether a difference on an element is more than `epsilon` times its unit. That is no less than its scale, which takes less to find.
+    fn exceeds(&self, element: u32, difference: Spectrum, epsilon: f64) -> bool {
+        let size = self.size(element, difference);
+        let unit = || unit(self.mesh, self.light, &self.beam, self.options, element);
+        size > epsilon * self.scale(element) && size > epsilon * unit()
     }
 
     fn scale(&self, element: u32) -> f64 {
@@ -126,7 +126,7 @@ impl Refinement<'_> {
         };
         let (mut failed, open): (Vec<u32>, Vec<(u32, Range)>) = elements
             .par_iter()
-            .with_min_len(256)
+            .with_min_len(64)
             .filter_map(matters)
             .partition_map(|(e, range)| {
                 if range.width() >= self.options.epsilon_v {
@@ -169,7 +169,7 @@ impl Refinement<'_> {
             let arrived = |v: u32| self.arrived.irradiance[v as usize];
             let interpolated = self.mesh.interpolated(leaf, feeler.point, arrived);
             let difference = (feeler.irradiance - interpolated).abs();
-            self.size(leaf, difference) <= self.options.epsilon_r * self.unit(leaf)
+            !self.exceeds(leaf, difference, self.options.epsilon_r)
         };
         let feelers = self.feelers.iter().map(|f| (f, leaf_of(f)));
         feelers

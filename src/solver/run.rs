@@ -21,7 +21,6 @@ use crate::radiometry::Power;
 use crate::scene::Scene;
 use crate::visibility::{Triangles, Visibility};
 use rayon::prelude::*;
-use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
 /// A solve in progress.
@@ -43,7 +42,7 @@ pub struct Solver<'a> {
     pub(super) reference: f64,
     /// What all patches emit, W times the square of the frame's scale.
     emitted: Power,
-    /// What is unshot, by sign, if that was counted.
+    /// What was unshot, by sign, when that was last counted.
     unshot: Option<[Power; 2]>,
     /// What the solve took before it was taken up again.
     spent: Duration,
@@ -170,7 +169,6 @@ impl<'a> Solver<'a> {
             }
             self.laps.lap(|parts| &mut parts.selecting);
             let part = part(&self.course.stage);
-            let kind = discriminant(&self.course.stage);
             match std::mem::take(&mut self.course.stage) {
                 Stage::Shooting => {
                     if let Some(reason) = self.shoot(unshot, None) {
@@ -192,9 +190,6 @@ impl<'a> Solver<'a> {
                     return StopReason::Converged;
                 }
             }
-            // Until a wave, or all light, has arrived everywhere, the light is what it was, and refinement hardly changes how much it is.
-            let goes_on = discriminant(&self.course.stage) == kind && self.course.stage.is_long();
-            self.unshot = self.unshot.filter(|_| goes_on);
             self.laps.lap(part);
         }
     }
@@ -273,7 +268,10 @@ impl<'a> Solver<'a> {
 
     /// What is unshot, by sign.
     fn count_unshot(&mut self) -> [Power; 2] {
-        let unshot = self.unshot.unwrap_or_else(|| self.unshot_by_sign());
+        // Until a wave, or all light, has arrived everywhere, the light is what it was.
+        let stays = matches!(self.course.stage, Stage::Waving(_) | Stage::Gathering(_));
+        let known = self.unshot.filter(|_| stays);
+        let unshot = known.unwrap_or_else(|| self.unshot_by_sign());
         self.unshot = Some(unshot);
         unshot
     }

@@ -31,7 +31,11 @@ impl<'a> Solver<'a> {
             sign,
         };
         self.light.take(&self.mesh, shooter, sign);
-        let (arrived, rays) = self.arrivals(beam, shooter, &reached);
+        // One has work where the other waits.
+        let ((arrived, rays), lost) = rayon::join(
+            || self.arrivals(beam, shooter, &reached),
+            || self.escape_of_shot(shooter, (power, sign), &shooting),
+        );
         self.course.rays += rays;
         self.light.receive(arrived.irradiance.par_iter().copied());
         let elements = self.mesh.leaves();
@@ -47,6 +51,7 @@ impl<'a> Solver<'a> {
             candidates,
             feelers,
             arrived,
+            lost: Some(lost),
             made: Some(shooting),
         });
     }
@@ -143,10 +148,16 @@ impl<'a> Solver<'a> {
         lost
     }
 
+    /// … which is the same before and after the mesh is refined for it: the shooter does not light itself.
     fn escape_of(&self, shot: &Shot, source: &Shooter) -> Lost {
+        let of = (shot.power, shot.sign);
+        let found = || self.escape_of_shot(shot.shooter as usize, of, source);
+        shot.lost.unwrap_or_else(found)
+    }
+
+    fn escape_of_shot(&self, shooter: usize, (power, sign): (f64, Sign), source: &Shooter) -> Lost {
         let seed = self.course.shots as u32;
-        let lost = self.escape(shot.shooter as usize, source, shot.power, seed);
-        lost * f64::from(shot.sign.factor())
+        self.escape(shooter, source, power, seed) * f64::from(sign.factor())
     }
 
     pub(super) fn sampler(&self) -> Sampler<'a> {

@@ -268,6 +268,7 @@ impl<'a> Solver<'a> {
             candidates: candidates.collect(),
             feelers: Vec::new(),
             arrived: wave.arrived,
+            lost: None,
             made: self.radiated.take(),
         }
     }
