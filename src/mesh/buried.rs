@@ -5,7 +5,7 @@
 //! covers in part. So buried vertices are not evaluated; light is continued to them from the open vertices around, and
 //! they have no weight when it is integrated.
 
-use super::Mesh;
+use super::{Mesh, NONE};
 use crate::radiometry::Spectrum;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
@@ -17,6 +17,23 @@ pub(super) struct Continuation {
     steps: Vec<(u32, u32)>,
     /// The vertices whose mean each takes.
     sources: Vec<u32>,
+}
+
+impl Continuation {
+    /// What of it fills vertices that are `wanted`.
+    fn of(&self, wanted: impl Fn(u32) -> bool) -> Self {
+        let mut part = Self::default();
+        let mut begin = 0;
+        for &(vertex, end) in &self.steps {
+            if wanted(vertex) {
+                let sources = &self.sources[begin as usize..end as usize];
+                part.sources.extend_from_slice(sources);
+                part.steps.push((vertex, part.sources.len() as u32));
+            }
+            begin = end;
+        }
+        part
+    }
 }
 
 impl Mesh {
@@ -39,9 +56,9 @@ impl Mesh {
         }
     }
 
-    /// Plans the continuation: ring by ring from the open vertices, along the edges of the fans.
-    pub(super) fn plan_continuation(&mut self) {
-        let edges = self.edges_from_buried();
+    /// Plans the continuation on some patches, given in order: ring by ring from the open vertices, along the edges of the fans.
+    pub(super) fn plan_continuation(&mut self, patches: &[u32]) {
+        let edges = self.edges_from_buried(patches);
         let is_open = |vertex: &u32| !self.buried[*vertex as usize];
         let beside = |vertex: u32| {
             let first = edges.partition_point(|(from, _)| *from < vertex);
@@ -49,7 +66,11 @@ impl Mesh {
             let edges = edges.take_while(move |(from, _)| *from == vertex);
             edges.map(|(_, to)| *to)
         };
-        let mut plan = Continuation::default();
+        let is_elsewhere = |vertex: u32| {
+            let patch = self.vertices.patch_of(vertex);
+            patches.binary_search(&patch).is_err()
+        };
+        let mut plan = self.continuation.of(is_elsewhere);
         let mut filled = FxHashSet::default();
         let outermost = edges.iter().filter(|(_, to)| is_open(to));
         let mut ring: Vec<u32> = outermost.map(|(from, _)| *from).collect();
@@ -72,13 +93,12 @@ impl Mesh {
         self.continuation = plan;
     }
 
-    /// The edges of all fans from their buried ends, in order.
-    fn edges_from_buried(&self) -> Vec<(u32, u32)> {
+    /// The edges of the fans on some patches from their buried ends, in order.
+    fn edges_from_buried(&self, patches: &[u32]) -> Vec<(u32, u32)> {
         let is_buried = |vertex: &u32| self.buried[*vertex as usize];
-        let buried = (0..self.vertices.len() as u32).filter(is_buried);
-        let mut patches: Vec<u32> = buried.map(|v| self.vertices.patch_of(v)).collect();
-        patches.sort_unstable();
-        patches.dedup();
+        let is_concerned = |patch: &u32| self.vertices_of(*patch).any(|v| is_buried(&v));
+        let patches = patches.par_iter().copied().with_min_len(64);
+        let patches: Vec<u32> = patches.filter(is_concerned).collect();
         let edges_of = |leaf: u32| {
             let edges = self
                 .fan(leaf)
@@ -88,8 +108,12 @@ impl Mesh {
                 .filter(|(from, _)| is_buried(from))
         };
         let elements = self.elements_on(&patches).into_par_iter();
-        let is_leaf = |e: &u32| self.elements.is_leaf(*e);
-        let leaves = elements.with_min_len(256).filter(is_leaf);
+        let is_beside = |e: &u32| {
+            let of = self.element(*e);
+            let hanging = of.hanging.iter().filter(|v| **v != NONE);
+            of.is_leaf() && of.vertices().chain(hanging.copied()).any(|v| is_buried(&v))
+        };
+        let leaves = elements.with_min_len(256).filter(is_beside);
         let edges = leaves.flat_map_iter(edges_of);
         let mut edges: Vec<(u32, u32)> = edges.collect();
         edges.par_sort_unstable();

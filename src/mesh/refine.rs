@@ -212,8 +212,8 @@ impl Mesh {
                 self.touch(self.vertices.patch_of(vertex as u32));
             }
         }
-        self.plan_continuation();
         let touched = self.touched();
+        self.plan_continuation(&touched);
         self.integrate(&touched);
         self.touched = Vec::new();
     }

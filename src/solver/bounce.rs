@@ -61,8 +61,12 @@ impl Solver<'_> {
             let direct = direct.map(|direct| &direct.irradiance[..]);
             Neighbourhoods::new(&self.mesh, self.visibility, direct)
         });
-        let arrived = self.arrivals_near(beam, &neighbourhoods);
-        let lost = self.escape_of_all(&shooter, power);
+        // One has work where the other waits.
+        let ((arrived, rays), lost) = rayon::join(
+            || self.arrivals_near(beam, &neighbourhoods),
+            || self.escape_of_all(&shooter, power),
+        );
+        self.course.rays += rays;
         let closing = self.closing(sent - lost.all, &arrived, &neighbourhoods);
         self.light.take_all(sign);
         let at = neighbourhoods.of.par_iter().map(|near| match *near {
@@ -94,17 +98,15 @@ impl Solver<'_> {
         ratio.clamp(bounds[0], bounds[1]).as_vec3()
     }
 
-    /// What arrives at one vertex of each neighbourhood.
-    fn arrivals_near(&mut self, beam: Beam, near: &Neighbourhoods) -> Vec<Gather> {
+    /// What arrives at one vertex of each neighbourhood, and with how many rays.
+    fn arrivals_near(&self, beam: Beam, near: &Neighbourhoods) -> (Vec<Gather>, u64) {
         let seed = self.course.shots as u32;
         let near: Vec<&[u32]> = near.iter().collect();
         let receiver = |vertices: &&[u32]| {
             let vertex = drawn(&self.mesh, vertices, seed);
             receiver_at(&self.mesh, &self.light, vertex)
         };
-        let (gathers, rays) = evaluate(beam.sampler, beam.shooter, &near, receiver);
-        self.course.rays += rays;
-        gathers
+        evaluate(beam.sampler, beam.shooter, &near, receiver)
     }
 }
 

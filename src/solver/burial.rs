@@ -16,6 +16,9 @@ const GRAZING: u32 = 16;
 const HEIGHT: f64 = 0.15;
 const LOWER: f64 = 0.8;
 
+/// Vertices that are looked at together. Those below one solid follow one another, and take many times longer than the others.
+const BLOCK: usize = 64;
+
 /// Whether each vertex from `first` on is buried. One ray each; the rest only for those whose first ray ends on a dark back.
 pub(super) fn buried(
     mesh: &Mesh,
@@ -31,7 +34,7 @@ pub(super) fn buried(
         .filter(|v| mesh.receives(*v))
         .collect();
     let blocks: Vec<Vec<bool>> = receiving
-        .par_chunks(256)
+        .par_chunks(BLOCK)
         .map(|block| {
             let mut dark = sees_dark(mesh, visibility, backing, block, 0..1);
             let suspects: Vec<u32> = block

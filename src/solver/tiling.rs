@@ -76,7 +76,7 @@ impl Tiling {
             let marks = evenness.marks(patch, (*cut)?);
             marks.contains(&true).then_some((patch as u32, marks))
         };
-        let patches = cuts.par_iter().enumerate().with_min_len(64);
+        let patches = cuts.par_iter().enumerate();
         let uneven = patches.filter_map(of_patch).collect();
         Self::with(mesh, cuts, uneven)
     }
@@ -170,7 +170,7 @@ fn listed<T: Send>(
 ) -> Vec<T> {
     let mut list = Vec::with_capacity(room);
     for (slice, cuts) in cuts.chunks(SLICE).enumerate() {
-        let numbered = cuts.par_iter().enumerate().with_min_len(64);
+        let numbered = cuts.par_iter().enumerate();
         list.par_extend(numbered.flat_map_iter(|(place, cut)| {
             let number = (slice * SLICE + place) as u32;
             cut.map(|cut| of_patch(number, cut)).unwrap_or_default()
