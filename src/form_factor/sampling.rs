@@ -109,6 +109,44 @@ impl Kernel for Partition<'_, '_> {
     }
 }
 
+/// Step 2 for a block of points, but for its rays.
+struct Aiming<'a, 'b> {
+    sampler: &'a Sampler<'a>,
+    source: &'a Source,
+    receivers: &'a [(Receiver, u32)],
+    scratch: &'b mut Scratch,
+}
+
+impl Kernel for Aiming<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const WIDTH: usize>(self) {
+        let Self {
+            source, receivers, ..
+        } = self;
+        let extent = self.sampler.extent;
+        let Scratch {
+            leaves,
+            fresh,
+            fans,
+            ..
+        } = self.scratch;
+        let offset = lift(DVec3::ZERO, source.normal(), extent).as_vec3();
+        fans.clear();
+        let points = receivers.iter().zip(leaves).zip(fresh);
+        for (((receiver, key), leaves), fresh) in points {
+            let origin = lift(receiver.point, receiver.normal, extent).as_vec3();
+            for fan in leaves[*fresh..].chunks_mut(MAX_FAN) {
+                aim(fan, *key);
+                fans.begin(origin);
+                let targets = fan.iter().map(|leaf| target(source, *receiver, leaf));
+                fans.extend(targets.map(|target| target + offset));
+            }
+        }
+    }
+}
+
 /// Step 3 for a block of points.
 struct Splitting<'a, 'b> {
     pairings: &'b [Pairing<'a>],
@@ -198,6 +236,12 @@ impl Sampler<'_> {
 
     /// Step 2: a ray to each fresh leaf of each point.
     fn trace(&self, source: &Source, receivers: &[(Receiver, u32)], scratch: &mut Scratch) -> u64 {
+        scratch.isa.run(Aiming {
+            sampler: self,
+            source,
+            receivers,
+            scratch,
+        });
         let Scratch {
             leaves,
             fresh,
@@ -205,20 +249,6 @@ impl Sampler<'_> {
             masks,
             ..
         } = scratch;
-        let offset = lift(DVec3::ZERO, source.normal(), self.extent).as_vec3();
-        fans.clear();
-        for ((receiver, key), (leaves, fresh)) in
-            receivers.iter().zip(leaves.iter_mut().zip(&*fresh))
-        {
-            let origin = lift(receiver.point, receiver.normal, self.extent).as_vec3();
-            for fan in leaves[*fresh..].chunks_mut(MAX_FAN) {
-                fans.begin(origin);
-                fans.extend(fan.iter_mut().map(|leaf| {
-                    leaf.place = place_in(leaf.cell, *key);
-                    target(source, *receiver, leaf) + offset
-                }));
-            }
-        }
         self.visibility.occluded(fans, masks);
         let mut masks = masks.iter();
         for (leaves, fresh) in leaves.iter_mut().zip(&*fresh) {
@@ -232,10 +262,20 @@ impl Sampler<'_> {
     }
 }
 
-/// Where in a cell the ray to it is aimed.
+/// Finds where in the cells of a fan the rays to them are aimed.
 #[inline(always)]
-fn place_in(cell: CellIndex, key: u32) -> [f32; 2] {
-    jitter(key, cell).map(|j| 0.05 + 0.9 * j as f32)
+fn aim(fan: &mut [Leaf], key: u32) {
+    let mut cells = [0; MAX_FAN];
+    let mut places = [[0.0; 2]; MAX_FAN];
+    for (cell, leaf) in cells.iter_mut().zip(&*fan) {
+        *cell = leaf.cell;
+    }
+    for (place, cell) in places.iter_mut().zip(&cells[..fan.len()]) {
+        *place = jitter(key, *cell).map(|j| 0.05 + 0.9 * j as f32);
+    }
+    for (leaf, place) in fan.iter_mut().zip(places) {
+        leaf.place = place;
+    }
 }
 
 /// The point that the ray to a leaf is aimed at.

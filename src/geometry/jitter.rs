@@ -1,6 +1,7 @@
 //! Seeded jitter: the same pair of numbers in [0, 1) for the same key, on any thread.
 
 /// Two independent numbers in [0, 1) that depend on the key alone (two rounds of the SplitMix64 finaliser).
+#[inline(always)]
 pub fn jitter(a: u32, b: u32) -> [f64; 2] {
     let mut z = ((u64::from(a) << 32) | u64::from(b)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     for _ in 0..2 {

@@ -36,7 +36,10 @@ impl Refinement<'_> {
     pub fn pass(&mut self, candidates: &[u32]) -> Vec<u32> {
         let may_split =
             |e: &u32| self.mesh.elements.is_leaf(*e) && self.options.may_split(self.mesh, *e);
-        let fails = |e: &u32| self.nodal_difference(*e) || self.residual(*e);
+        let fails = |e: &u32| {
+            let scale = self.scale(*e);
+            self.nodal_difference(*e, scale) || self.residual(*e, scale)
+        };
         let (mut failed, passed): (Vec<u32>, Vec<u32>) = candidates
             .par_iter()
             .with_min_len(64)
@@ -70,20 +73,20 @@ impl Refinement<'_> {
     }
 
     /// Test 1: corners differ by more than ε_d.
-    fn nodal_difference(&self, element: u32) -> bool {
+    fn nodal_difference(&self, element: u32, scale: f64) -> bool {
         let of = self.mesh.element(element);
         let values = of.corners().iter().map(|v| self.tested(*v));
         let low = values.clone().fold(Spectrum::INFINITY, Spectrum::min);
         let high = values.fold(Spectrum::NEG_INFINITY, Spectrum::max);
-        self.exceeds(element, high - low, self.options.epsilon_d)
+        self.exceeds(element, high - low, (self.options.epsilon_d, scale))
     }
 
     /// Test 2: at the centre, computed and interpolated light differ by more than ε_r. Both are sums over all shots since
     /// the element was made (before that the centre was interpolated), so small lights add up.
-    fn residual(&self, element: u32) -> bool {
+    fn residual(&self, element: u32, scale: f64) -> bool {
         let of = self.mesh.element(element);
         let residual = of.residual(|v| self.tested(v));
-        self.exceeds(element, residual, self.options.epsilon_r)
+        self.exceeds(element, residual, (self.options.epsilon_r, scale))
     }
 
     /// What tests 1 and 2 compare at a vertex: all light, but of a last gathering what that has brought.
@@ -104,11 +107,11 @@ impl Refinement<'_> {
         f64::from((difference * weight).max_element())
     }
 
-    /// Whether a difference on an element is more than `epsilon` times its unit. That is no less than its scale, which takes less to find.
-    fn exceeds(&self, element: u32, difference: Spectrum, epsilon: f64) -> bool {
+    /// Whether a difference on an element is more than `epsilon` times its unit, which is no less than its scale.
+    fn exceeds(&self, element: u32, difference: Spectrum, (epsilon, scale): (f64, f64)) -> bool {
         let size = self.size(element, difference);
-        let unit = || unit(self.mesh, self.light, &self.beam, self.options, element);
-        size > epsilon * self.scale(element) && size > epsilon * unit()
+        size > epsilon * scale
+            && size > epsilon * (scale * growth(self.mesh, self.options, element))
     }
 
     fn scale(&self, element: u32) -> f64 {
@@ -169,7 +172,8 @@ impl Refinement<'_> {
             let arrived = |v: u32| self.arrived.irradiance[v as usize];
             let interpolated = self.mesh.interpolated(leaf, feeler.point, arrived);
             let difference = (feeler.irradiance - interpolated).abs();
-            !self.exceeds(leaf, difference, self.options.epsilon_r)
+            let scale = self.scale(leaf);
+            !self.exceeds(leaf, difference, (self.options.epsilon_r, scale))
         };
         let feelers = self.feelers.iter().map(|f| (f, leaf_of(f)));
         feelers
@@ -301,8 +305,12 @@ pub(super) fn unit(
     options: &Options,
     element: u32,
 ) -> f64 {
-    let growth = options.growth(mesh.longest_side(element) / mesh.frame.extent());
-    scale(mesh, light, beam, element) * growth
+    scale(mesh, light, beam, element) * growth(mesh, options, element)
+}
+
+/// How many times that is the scale.
+fn growth(mesh: &Mesh, options: &Options, element: u32) -> f64 {
+    options.growth(mesh.longest_side(element) / mesh.frame.extent())
 }
 
 /// The irradiance that relative thresholds are multiples of on an element.
