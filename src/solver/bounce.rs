@@ -136,8 +136,7 @@ mod tests {
             shooter: &shooter,
             sign: Sign::Positive,
         };
-        solver.arrivals_near(beam, &near);
-        let gathered = solver.course.rays - taken;
+        let (_, gathered) = solver.arrivals_near(beam, &near);
         assert!(
             taken > 0 && 10 * taken < 9 * gathered,
             "{taken} of {gathered}"
